@@ -188,7 +188,7 @@ TEST(RegistrationErrors, OfADecentredLensAreAsLargeAsSaid) {
     world.camera.distortion = {-0.10, 0.04, -0.0008, 0.0010, 0.0};
     LensPrior prior;
     prior.distortion = 0.1;
-    prior.tangential = 0.003;
+    prior.tangential = 0.001;
     prior.principal = 0.01;
     Scores scores;
     for (int k = 0; k < 4; ++k) {

@@ -39,7 +39,7 @@ inline LensPrior data_sheet_prior() {
     LensPrior prior;
     prior.principal = 0.01;
     prior.distortion = 0.1;
-    prior.tangential = 0.003;
+    prior.tangential = 0.001;
     prior.turn_rad = 0.02;
     prior.shift = 0.02;
     return prior;

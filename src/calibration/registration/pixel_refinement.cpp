@@ -521,11 +521,11 @@ PixelRefinement refine_on_pixels(const Mesh& mesh,
             if (!free) return problem.SetParameterBlockConstant(block.data());
             solved.sought.emplace_back(block.data(), size);
         };
-        const auto know = [&](const Eigen::MatrixXd& before,
+        const auto know = [&](const Eigen::MatrixXd& information,
                               const std::vector<double*>& blocks,
                               const std::vector<int>& sizes) {
             solved.priors.push_back(
-                problem.AddResidualBlock(new GaussianPrior(before, sizes), nullptr, blocks));
+                problem.AddResidualBlock(new GaussianPrior(information, sizes), nullptr, blocks));
         };
         seek(state.pose, true);
         know(independent(pose_sigma), {state.pose.data()}, {kPoseTerms});

@@ -22,7 +22,9 @@ LiveOptions live_options_of(const BenchCalibrationRequest& request) {
     options.map = request.map;
     if (request.camera_to_xyz) options.colour.camera_to_xyz = *request.camera_to_xyz;
     if (request.projector && request.product)
-        options.mockup = mockup_mask(request.product->mesh, *request.projector);
+        options.mockup = request.lit.empty()
+                             ? mockup_mask(request.product->mesh, *request.projector)
+                             : request.lit;
     return options;
 }
 

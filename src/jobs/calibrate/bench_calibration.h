@@ -33,6 +33,8 @@ struct BenchCalibrationRequest {
     /// not see is predicted. Both or none.
     std::optional<View> projector;
     std::shared_ptr<const Product> product;
+    /// What is lit for the colours, one channel; empty: mockup_mask() of the two above.
+    Image8 lit;
     PlaceCode places = PlaceCode::gray;  ///< what is shown to find where the camera sees them
     /// Where the projector is not known to stand, but its lens and the camera's are: the Gray code
     /// is photographed first and tells, with the mock-up's mesh (find_room).

@@ -1,5 +1,6 @@
 #include "jobs/calibrate/staged_calibration.h"
 
+#include <algorithm>
 #include <utility>
 
 #include <fmt/format.h>
@@ -7,6 +8,7 @@
 #include "calibration/correspondence/patterns.h"
 #include "calibration/drift.h"
 #include "core/error.h"
+#include "core/image_io.h"
 #include "jobs/captured_calibration.h"
 #include "scene/mockup_mask.h"
 
@@ -26,6 +28,40 @@ void remove_folder(const std::filesystem::path& folder) {
     std::error_code error;
     std::filesystem::remove_all(folder, error);
     if (error) throw FileError(folder, "", error.message(), "a folder that can be emptied");
+}
+
+/// Whether two masks differ by no more than a pixel at their edges.
+bool are_nearly_alike(const Image8& a, const Image8& b) {
+    if (a.width != b.width || a.height != b.height) return false;
+    for (int y = 0; y < a.height; ++y)
+        for (int x = 0; x < a.width; ++x) {
+            if (a.at(x, y) == b.at(x, y)) continue;
+            bool at_edge = false;
+            for (int v = std::max(0, y - 1); v <= std::min(a.height - 1, y + 1); ++v)
+                for (int u = std::max(0, x - 1); u <= std::min(a.width - 1, x + 1); ++u)
+                    at_edge = at_edge || a.at(u, v) == b.at(x, y);
+            if (!at_edge) return false;
+        }
+    return true;
+}
+
+/// What is lit for the colours. A pose that was found again, hardly another, lights what the
+/// photographs that are there were lit with: these stay right.
+Image8 lit_for(const BenchCalibrationRequest& request, const std::filesystem::path& colours) {
+    if (!request.projector || !request.product) return {};
+    Image8 lit = mockup_mask(request.product->mesh, *request.projector);
+    const auto file = colours / "lit.png";
+    std::error_code error;
+    if (std::filesystem::exists(file, error)) {
+        const ImageF kept = read_image(file).image;
+        Image8 before(kept.width, kept.height, 1);
+        for (std::size_t i = 0; i < before.values.size(); ++i)
+            before.values[i] =
+                kept.values[i * static_cast<std::size_t>(kept.channels)] > 0.0f ? 255 : 0;
+        if (are_nearly_alike(before, lit)) return before;
+    }
+    write_png(file, lit);
+    return lit;
 }
 
 /// A place that was found for a mock-up that stands elsewhere now would spoil the colours.
@@ -100,6 +136,7 @@ void find_colours(StagedCalibration& run,
     if (meet) meet(recording);
     BenchCalibrationRequest request = finds ? with_room(run.request, *run.room) : run.request;
     request.recording = &recording;
+    if (finds) request.lit = lit_for(request, recording.folder());
     run.check.reset();
     run.made.reset();
     BenchCalibration made;
