@@ -219,10 +219,18 @@ WatchedCaptures::FoundBefore WatchedCaptures::look_at_what_is_there(std::vector<
             fmt::format("{} files were there before and are passed over", from_before_.size());
         return result;
     }
-    std::erase_if(result.still_to_shoot, [this](const Pattern& pattern) {
-        const auto role = std::find(roles_.begin(), roles_.end(), pattern.role);
-        return role != roles_.end() &&
+    const auto is_there = [this](const std::string& wanted) {
+        const auto role = std::find(roles_.begin(), roles_.end(), wanted);
+        return role == roles_.end() ||
                !file_of_role_[static_cast<std::size_t>(role - roles_.begin())].empty();
+    };
+    // Stripes and their inverse together: one alone may be either
+    const std::string inverse = "-inverse";
+    std::erase_if(result.still_to_shoot, [&](const Pattern& pattern) {
+        const std::string other = pattern.role.ends_with(inverse)
+                                      ? pattern.role.substr(0, pattern.role.size() - inverse.size())
+                                      : pattern.role + inverse;
+        return is_there(pattern.role) && is_there(other);
     });
     result.words = fmt::format(
         "{} of the {} photographs were there before and are used", state_.found, state_.wanted);

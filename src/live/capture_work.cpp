@@ -262,9 +262,9 @@ void CaptureThread::Implementation::show_by_hand(const std::vector<Pattern>& pat
     const Progress told = progress();
     for (std::size_t k = 0; k < patterns.size(); ++k) {
         show(patterns[k].drive);
+        next_picture = false;  // before it is said: who reads that may press at once
         told.update(static_cast<double>(k) / static_cast<double>(patterns.size()),
                     fmt::format("shoot {} of {}: {}", k + 1, patterns.size(), patterns[k].role));
-        next_picture = false;
         while (!next_picture) {
             told.check_stop();
             std::this_thread::sleep_for(kBetweenLooks);

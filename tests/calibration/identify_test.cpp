@@ -167,6 +167,33 @@ TEST(Identify, FindsWhatWasTakenOutOfOrder) {
     moved({"red"}, false);
 }
 
+// One of a pair was forgotten, and numbers do not tell which: both are photographed again.
+TEST(Identify, TakesAPairAgainOfWhichOneWasForgotten) {
+    const Shoot truth = shoot(), again = shoot(1.0, 2);
+    for (const std::string forgotten : {"gray-row-1", "gray-row-1-inverse"}) {
+        std::vector<Glimpse> photographs;
+        for (std::size_t r = 0; r < truth.roles.size(); ++r)
+            if (truth.roles[r] != forgotten) photographs.push_back(truth.photographs[r]);
+        std::vector<std::string> late;
+        for (std::size_t r = 0; r < truth.roles.size(); ++r) {
+            if (!truth.roles[r].starts_with("gray-row-1")) continue;
+            photographs.push_back(again.photographs[r]);
+            late.push_back(truth.roles[r]);
+        }
+        for (std::size_t k = 0; k < photographs.size(); ++k)
+            photographs[k].name = fmt::format("IMG_{:04}.CR2", 7 + k);
+        const auto found = identify(photographs, truth.roles);
+        ASSERT_TRUE(found.complete()) << forgotten;
+        for (std::size_t r = 0; r < truth.roles.size(); ++r)
+            for (std::size_t k = 0; k < late.size(); ++k)
+                if (truth.roles[r] == late[k]) {
+                    EXPECT_EQ(*found.photograph_of_role[r], truth.roles.size() - 1 + k)
+                        << forgotten;
+                }
+        EXPECT_EQ(found.odd.size(), 1u);
+    }
+}
+
 TEST(Identify, TakesAFewAndNone) {
     const Shoot truth = shoot();
     EXPECT_FALSE(identify({}, truth.roles).complete());

@@ -5,15 +5,19 @@
 #include <cmath>
 #include <thread>
 
+#include <fmt/format.h>
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "core/image_io.h"
 #include "core/json.h"
 #include "core/paths.h"
 #include "live/capture_pictures.h"
 #include "live/projector_setup.h"
 #include "scene/library.h"
+#include "session/small_session.h"
 #include "support/jpeg.h"
+#include "support/kept_light.h"
 #include "support/ptpip_camera.h"
 #include "support/small_bench_file.h"
 #include "support/temporary_folder.h"
@@ -303,6 +307,99 @@ TEST(CaptureThread, SetsACameraAndFitsItsCurve) {
     wait_until(capture, [](const CaptureView& view) {
         return rests(view) && view.curve.find(user_folder() / "cameras") != std::string::npos;
     });
+}
+
+/// Somebody with a camera that is on no cable: shoots what is shown, copies the files.
+class Photographer {
+  public:
+    explicit Photographer(std::filesystem::path card)
+        : card_(std::move(card)),
+          bench_(testing::bench_on_kept_light(testing::small_bench_description(),
+                                              testing::small_bench_product())),
+          ports_(bench_.ports()) {}
+
+    ShowPicture port() {
+        return [this](const Image8& drive) { ports_.show(drive); };
+    }
+    /// Until the capture waits for no more pictures; all of them but `forgotten`.
+    void shoot(CaptureThread& capture, const std::string& forgotten) {
+        std::string last;
+        wait_until(capture, [](const CaptureView& v) { return v.waits_for_next; });
+        for (;;) {
+            const CaptureView view = wait_until(capture, [&](const CaptureView& v) {
+                return (v.waits_for_next && v.stage.starts_with("shoot") && v.stage != last) ||
+                       (!v.waits_for_next && v.stage.find("photographs") != std::string::npos) ||
+                       v.finished || !v.why.empty();
+            });
+            if (!view.waits_for_next) return;
+            last = view.stage;
+            ++shown_;
+            if (!last.ends_with(": " + forgotten)) take();
+            capture.next();
+        }
+    }
+    int shown() const { return shown_; }
+
+  private:
+    void take() {
+        const Photograph photograph = ports_.photograph(bench_.default_exposure_s());
+        Image16 picture(photograph.image.width, photograph.image.height, 3);
+        for (std::size_t k = 0; k < picture.values.size(); ++k)
+            picture.values[k] = static_cast<std::uint16_t>(
+                std::max(0.0f, 4.0f * (photograph.image.values[k] - 1024.0f)));
+        write_png(card_ / fmt::format("IMG_{:04}.png", ++files_), picture);
+    }
+
+    std::filesystem::path card_;
+    Bench bench_;
+    BenchPorts ports_;
+    int shown_ = 0, files_ = 0;
+};
+
+TEST(CaptureThread, CompletesAFolderOfPhotographs) {
+    Home home;
+    HeadlessContext context{GlDevice::automatic};
+    context.release();
+    CaptureThread capture(context, [] {});
+    const auto card = home.folder() / "card";
+    std::filesystem::create_directories(card);
+    Photographer photographer(card);
+    CaptureSetup setup;
+    setup.camera = {CameraChoice::Kind::folder, card.string()};
+    setup.product = testing::small_bench_product();
+    setup.projector_view = testing::small_bench_description().projector.view;
+    setup.projector = "a projector";
+    setup.width = setup.projector_view->width;
+    setup.height = setup.projector_view->height;
+    setup.projector_port = [&](const Progress&, const TellWait&) { return photographer.port(); };
+    capture.use(setup);
+    // No camera to look through, nothing but the colours to begin with
+    const CaptureView view = wait_until(
+        capture, [](const CaptureView& v) { return !v.step(CaptureStep::look).called_for; });
+    EXPECT_FALSE(view.step(CaptureStep::geometry).called_for);
+    EXPECT_TRUE(view.step(CaptureStep::colour).called_for);
+    EXPECT_FALSE(view.step(CaptureStep::check).called_for);
+
+    capture.start(CaptureStep::colour, false);
+    photographer.shoot(capture, "gray-row-1");
+    const CaptureView waiting = wait_until(capture, [](const CaptureView& v) {
+        // Or its inverse: nobody can tell which of the two is there
+        return v.stage.find("missing: gray-row-1") != std::string::npos || !v.why.empty();
+    });
+    EXPECT_EQ(waiting.why, "");
+    const int all = photographer.shown();
+    capture.cancel();
+    wait_until(capture, [](const CaptureView& v) { return v.doing == Doing::nothing; });
+
+    // Later: what is missing is shown, and its photographs come last
+    capture.start(CaptureStep::colour, false);
+    photographer.shoot(capture, "");
+    const CaptureView made = wait_until(
+        capture, [](const CaptureView& v) { return v.finished.has_value() || !v.why.empty(); });
+    ASSERT_TRUE(made.finished) << made.why;
+    EXPECT_EQ(photographer.shown(), all + 2) << "the forgotten one and its inverse";
+    EXPECT_EQ(made.found_before,
+              fmt::format("{} of the {} photographs were there before and are used", all - 1, all));
 }
 
 TEST(CaptureThread, SaysWhyACameraDoesNotOpen) {

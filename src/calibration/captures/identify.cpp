@@ -164,6 +164,7 @@ class Leftovers {
     }
 
     void match() {
+        replace_half_a_pair();
         for (std::size_t r = 0; r < roles_.size(); ++r)
             if (!result_.photograph_of_role[r]) match_one(r);
         match_a_pair();
@@ -214,6 +215,29 @@ class Leftovers {
             best = p;
         }
         if (best) take(*best, r);
+    }
+
+    /// Of a pair of which one is missing nobody can tell which one is there. Both photographed
+    /// again, one after the other, can.
+    void replace_half_a_pair() {
+        for (std::size_t r = 0; r < roles_.size(); ++r) {
+            const auto partner = partner_of(r);
+            if (result_.photograph_of_role[r] || !partner) continue;
+            const auto half = result_.photograph_of_role[*partner];
+            if (!half) continue;
+            for (std::size_t p = 0; p + 1 < free_.size(); ++p) {
+                const std::size_t q = p + 1;
+                if (!free_[p] || !free_[q]) continue;
+                if (from_white(shares_.mean[p], shares_.mean[q]) >= kSame) continue;
+                if (std::min(mean_distance(shares_.mean[*half], shares_.mean[p]),
+                             mean_distance(shares_.mean[*half], shares_.mean[q])) >= kSame)
+                    continue;
+                free_[*half] = true;
+                take(p, std::min(r, *partner));
+                take(q, std::max(r, *partner));
+                break;
+            }
+        }
     }
 
     /// A whole pair, where no other is missing: in the order in which they were taken.
