@@ -19,7 +19,6 @@
 namespace livery {
 namespace {
 
-constexpr std::array<const char*, 3> kNames{"red", "green", "blue"};
 constexpr const char* kSameExposure =
     "photograph all pictures at one exposure set by hand (or state each exposure_s), and repeat";
 
@@ -168,13 +167,13 @@ std::optional<double> levels_over_bright(const Evidence& e, const Colours& c) {
 /// The light or the exposure changed between two colour photographs and stayed so. White then is
 /// not the sum of the channels, as with a projector that is not additive; gray-levels tells.
 void refuse_change_on_the_way(const Evidence& e, const Colours& c, glm::dvec3 held) {
-    constexpr double kLevels = 0.08;  // what blur takes from the brightest blocks
+    constexpr double kBlurred = 0.08;  // what blur takes from the brightest blocks
     const auto levels = levels_over_bright(e, c);
-    if (!levels || std::abs(*levels - 1.0) < kLevels) return;
+    if (!levels || std::abs(*levels - 1.0) < kBlurred) return;
     for (std::size_t k = 0; k < 3; ++k) {
         const double ratio = 1.0 / held[static_cast<int>(k)];
         if (std::abs(ratio - 1.0) < kAdditivityLimit) continue;
-        if (std::abs(*levels / ratio - 1.0) > 1.5 * kLevels) return;
+        if (std::abs(*levels / ratio - 1.0) > 1.5 * kBlurred) return;
         throw Refused("from " + c.channel[k]->name + " on the photographs are " + times_of(ratio) +
                           " than those before: they had another exposure, or the lamp another "
                           "brightness",
