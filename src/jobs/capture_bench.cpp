@@ -11,6 +11,7 @@
 #include "capture/video_camera.h"
 #include "core/colour.h"
 #include "core/paths.h"
+#include "core/pictures/white_balance.h"
 #include "jobs/camera_curve.h"
 #include "scene/library.h"
 
@@ -46,13 +47,16 @@ class BenchCamera : public Camera {
         return ports_.photograph(exposure_s_);
     }
     void use_transfer(const std::string&) override {}  // Its numbers are the sensor's.
+    /// Balanced, as cameras show theirs: white is shown while somebody aims.
     Image8 live_view() override {
         const Photograph seen = ports_.photograph(exposure_s_);
+        const glm::dvec3 balance = white_balance(seen);
         Image8 srgb(seen.image.width, seen.image.height, 3);
         const double full = kLiveWhite * (seen.saturates_at - seen.black_level);
         for (std::size_t k = 0; k < srgb.values.size(); ++k) {
-            const double light =
-                (static_cast<double>(seen.image.values[k]) - seen.black_level) / full;
+            const double light = balance[static_cast<int>(k % 3)] *
+                                 (static_cast<double>(seen.image.values[k]) - seen.black_level) /
+                                 full;
             srgb.values[k] =
                 static_cast<std::uint8_t>(255.0 * srgb_encode(std::clamp(light, 0.0, 1.0)) + 0.5);
         }

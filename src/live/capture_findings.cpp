@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "core/pictures/white_balance.h"
 #include "live/capture_pictures.h"
 #include "scene/mockup_mask.h"
 

@@ -9,10 +9,6 @@
 
 namespace livery {
 
-/// Gains of red, green and blue that make the bright part of a photograph of white neutral: a
-/// camera's own numbers are mostly green. 1 where nothing is lit.
-glm::dvec3 white_balance(const Photograph& white);
-
 /// sRGB, `width` pixels wide at most, full scale a little over white.
 Image8 small_photograph(const Photograph& photograph,
                         int width,

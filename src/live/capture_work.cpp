@@ -6,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "calibration/preflight.h"
+#include "core/pictures/white_balance.h"
 #include "core/statistics.h"
 #include "jobs/calibrate/calibration_grade.h"
 #include "jobs/camera_curve.h"

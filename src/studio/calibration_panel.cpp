@@ -160,7 +160,8 @@ void look_for_changes(const Studio& studio) {
 
 void draw_what_changed(const CalibrationPanelState& state) {
     for (const std::string& change : state.stale) {
-        warning_text(sentence(change));
+        coloured_text(state.other_product.empty() ? colours::warning : colours::error,
+                      sentence(change));
         name_last_item("calibration-stale");
     }
 }

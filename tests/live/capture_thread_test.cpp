@@ -12,6 +12,7 @@
 #include "core/image_io.h"
 #include "core/json.h"
 #include "core/paths.h"
+#include "core/pictures/white_balance.h"
 #include "live/capture_pictures.h"
 #include "live/projector_setup.h"
 #include "scene/library.h"
