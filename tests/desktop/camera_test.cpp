@@ -114,6 +114,24 @@ class CameraBeforeMonitor : public TwoMonitors {
         program->click("camera-connect");
         program->wait_for_state("capture", "watching");
     }
+    void type_data_sheets() {
+        const DataSheets sheets = description().data_sheets.value();
+        const auto type = [&](const char* item, double value) {
+            program->click(item);
+            program->press_key("ctrl+a");
+            desktop->type(fmt::format("{}", value));
+            program->press_key("Return");
+        };
+        type("sheet-throw", sheets.throw_ratio);
+        type("sheet-shift", sheets.lens_shift);
+        type("sheet-focal", sheets.focal_mm);
+        type("sheet-sensor", sheets.sensor_width_mm);
+        type("sheet-distance", sheets.lens_distance_mm);
+    }
+    bool done(const std::string& step) {
+        return program->state("capture_steps").contains(step) &&
+               program->state("capture") != "capturing";
+    }
     std::string says() { return program->state("capture_says").get<std::string>(); }
     /// Waits until the column says something with these words in it.
     ::testing::AssertionResult says(const std::string& words) {
@@ -281,18 +299,7 @@ TEST_F(CameraBeforeMonitor, FirstSessionInTheWindowTakesFivePresses) {
     pick_projector();
     connect();
     program->click("place-found");
-    const DataSheets sheets = description().data_sheets.value();
-    const auto type = [&](const char* item, double value) {
-        program->click(item);
-        program->press_key("ctrl+a");
-        desktop->type(fmt::format("{}", value));
-        program->press_key("Return");
-    };
-    type("sheet-throw", sheets.throw_ratio);
-    type("sheet-shift", sheets.lens_shift);
-    type("sheet-focal", sheets.focal_mm);
-    type("sheet-sensor", sheets.sensor_width_mm);
-    type("sheet-distance", sheets.lens_distance_mm);
+    type_data_sheets();
     const std::string before = document.calibration;
     // Five presses of one button: it names what comes next.
     double wizard_s = 0.0, photographing_s = 0.0;
@@ -330,6 +337,90 @@ TEST_F(CameraBeforeMonitor, FirstSessionInTheWindowTakesFivePresses) {
     EXPECT_NE(program->state("capture_drift"), "Bad");
     program->click("revert");
     ASSERT_TRUE(wait_until([&] { return program->state("calibration") == before; }));
+    EXPECT_EQ(program->quit(), 0) << program->words();
+}
+
+/// Presses of mouse buttons by which a person gets there; what is typed is not counted.
+class Presses {
+  public:
+    explicit Presses(StudioProgram& program) : program_(program) {}
+    void operator()(const char* item) {
+        program_.click(item);
+        ++count_;
+    }
+    int count() const { return count_; }
+
+  private:
+    StudioProgram& program_;
+    int count_ = 0;
+};
+
+// Another camera beside the first has a geometry and colours of its own, and so has a third, whose
+// photographs are copied into a folder.
+TEST_F(CameraBeforeMonitor, NightlyAnotherCameraTakesEightPressesToTheColours) {
+    constexpr int most_presses = 8;
+    start_program();
+    pick_projector();
+    connect();
+    program->click("place-found");
+    type_data_sheets();
+    program->click("capture-geometry");
+    ASSERT_TRUE(wait_until([&] { return done("geometry"); }, 120s)) << says();
+    EXPECT_EQ(program->state("capture_next"), "colour") << "nobody asks for a look any more";
+    program->click("capture-close");
+
+    MonitorBench beside(*desktop, description(), small_bench_product());
+    Presses press(*program);
+    press("menu:Projector");
+    press("menu:capture");
+    program->click("camera-address");
+    program->press_key("ctrl+a");
+    desktop->type(beside.camera().port());
+    press("camera-connect");
+    program->wait_for_state("capture", "watching");
+    for (const char* step : {"look", "geometry", "colour"}) {
+        program->wait_for_state("capture_next", step);
+        press("capture-next-step");
+        ASSERT_TRUE(wait_until([&] { return done(step); }, 120s)) << says();
+    }
+    EXPECT_LE(press.count(), most_presses);
+    EXPECT_GT(beside.camera().photographs(), 90);
+    program->click("capture-close");
+
+    const auto card = studio->folder / "card";
+    std::filesystem::create_directories(card);
+    Presses by_hand(*program);
+    by_hand("menu:Projector");
+    by_hand("menu:capture");
+    by_hand("camera");
+    by_hand("camera:folder");
+    program->click("file-dialog:path");
+    program->press_key("ctrl+a");
+    desktop->type(card.string());
+    by_hand("file-dialog:ok");
+    // Its geometry comes of the same photographs.
+    program->wait_for_state("capture_next", "colour");
+    by_hand("capture-next-step");
+    const auto ended = [&] { return done("colour") || !says().empty(); };
+    std::string last;
+    for (;;) {
+        std::string stage;
+        ASSERT_TRUE(wait_until(
+            [&] {
+                stage = program->state("capture_stage").get<std::string>();
+                return ended() || (stage.starts_with("shoot") && stage != last);
+            },
+            120s));
+        if (ended()) break;
+        last = stage;
+        const testing::PtpPicture picture =
+            beside.photograph({.exposure_s = beside.bench().default_exposure_s()});
+        write_text_file(card / picture.name, picture.bytes);
+        program->click("capture-next");
+    }
+    EXPECT_EQ(says(), "");
+    EXPECT_TRUE(done("colour"));
+    EXPECT_LE(by_hand.count(), most_presses);
     EXPECT_EQ(program->quit(), 0) << program->words();
 }
 

@@ -26,6 +26,8 @@ class MonitorBench {
     /// To be judged by, while nobody photographs.
     const Bench& bench() const { return bench_; }
     PtpIpCamera& camera() { return camera_; }
+    /// What any camera that stands there gets of the monitor, as a raw file.
+    PtpPicture photograph(const PtpSettings& settings);
     /// In standby from its photograph of that number on: the light of the room is left.
     void sleep_from(int photograph) { asleep_from_ = photograph; }
     void wake() { sleep_from(std::numeric_limits<int>::max()); }
@@ -34,8 +36,6 @@ class MonitorBench {
     double shutter_s() const;
 
   private:
-    PtpPicture photograph(const PtpSettings& settings);
-
     Rectangle area_;
     XClient screen_;
     Bench bench_;

@@ -180,7 +180,9 @@ void draw_capture_stage(Shell& shell) {
     forget_textures(state);
     const ImVec2 space = ImGui::GetContentRegionAvail();
     const bool has_tiles = !view.tiles.empty();
-    const char* const live = view.doing == Doing::nothing   ? "No camera yet: choose one"
+    const bool by_hand = state.chosen && state.chosen->kind == CameraChoice::Kind::folder;
+    const char* const live = by_hand ? "Photographs appear as they are copied"
+                             : view.doing == Doing::nothing ? "No camera yet: choose one"
                              : view.doing == Doing::opening ? "Opening the camera"
                              : view.has_live_view           ? "Live view"
                                                             : "This camera gives no live view";

@@ -96,10 +96,15 @@ void draw_running(Shell& shell) {
     }
 }
 
-/// The first step that is called for and not done. A look may be left out.
+/// The first step that is called for and not done. A look may be left out: once a later one is
+/// done it is not asked for any more.
 std::optional<CaptureStep> next_step(const CaptureView& view) {
-    for (const StepWords& words : kSteps)
-        if (view.step(words.step).called_for && !view.step(words.step).done) return words.step;
+    const bool begun = view.step(CaptureStep::geometry).done || view.step(CaptureStep::colour).done;
+    for (const StepWords& words : kSteps) {
+        const CaptureStepView& step = view.step(words.step);
+        const bool left_out = words.step == CaptureStep::look && begun;
+        if (step.called_for && !step.done && !left_out) return words.step;
+    }
     return std::nullopt;
 }
 
@@ -185,7 +190,8 @@ void draw_next(Shell& shell, bool can_show) {
         const CaptureStepView& step = view.step(*next);
         std::string label =
             step.can_go_on ? "Go on with: " + std::string(words.name) : words.action;
-        if (step.expected_s >= 1.0) label += fmt::format(" (about {})", time_text(step.expected_s));
+        if (step.expected_s >= 1.0 && !by_hand)
+            label += fmt::format(" (about {})", time_text(step.expected_s));
         if (ImGui::Button(label.c_str(), large)) capture.start(*next, false);
         name_last_item("capture-next-step");
         tooltip(words.meaning);

@@ -240,6 +240,7 @@ MapState state_of_shell(const Shell& shell) {
         preflight[figure.name] = to_string(figure.grade);
     state["preflight"] = preflight.dump();
     const CaptureView& capture = studio.panels.capture->view;
+    state["capture_stage"] = quoted(capture.stage);
     state["capture_next"] = quoted(next_capture_step(capture));
     Json steps = Json::object();
     for (const auto& [name, step] : named_capture_steps(capture))
