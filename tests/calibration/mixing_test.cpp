@@ -219,6 +219,21 @@ TEST(ShrinkLocally, AveragesNoiseAndKeepsStructure) {
     const std::vector<float> tiny(noise.size(), 1e-12f), none(noise.size(), 0.0f);
     EXPECT_LT(rms(shrink_locally(grid, step, tiny, 4, false).value, stepped), 0.101);
     EXPECT_EQ(shrink_locally(grid, step, none, 4, false).value, step);
+
+    // Spokes of a wheel: bright ones, whose noise is that of their light, among dark ones whose
+    // small variances make up the mean.
+    std::vector<float> spokes = step, of_light = variance;
+    for (std::size_t i = 0; i < spokes.size(); ++i) {
+        const bool bright = i % 7 == 0;
+        const float sigma = bright ? 30.0f : 1.0f;
+        spokes[i] = (bright ? 2000.0f : 40.0f) + sigma * noise[i] / 0.1f;
+        of_light[i] = sigma * sigma;
+    }
+    for (const bool toward_zero : {false, true}) {
+        const Shrunk kept = shrink_locally(grid, spokes, of_light, 4, toward_zero);
+        for (std::size_t i = 0; i < spokes.size(); ++i)
+            ASSERT_LE(std::abs(kept.value[i] - spokes[i]), 3.01f * std::sqrt(of_light[i])) << i;
+    }
 }
 
 TEST(SampleColours, BadCapturesAreNamed) {

@@ -9,6 +9,11 @@
 namespace livery {
 namespace {
 
+/// A value is moved by this many of its own standard deviations at most: farther off it does not
+/// belong to its neighbourhood, as a bright spoke between dark ones whose small variances make up
+/// the mean (limited translation, Efron and Morris 1972).
+constexpr double kMostSigmas = 3.0;
+
 /// Sums over (2 radius + 1)^2 windows, clipped at the border, in place.
 void box_sum(std::vector<float>& plane, int width, int height, int radius) {
     const auto w = static_cast<std::size_t>(width);
@@ -131,10 +136,14 @@ Shrunk shrink_locally(const SampleGrid& grid,
             toward_zero ? std::max(0.0, 1.0 - 4.0 * error2 / std::max(m * m, 1e-300)) : 1.0;
         const double own = static_cast<double>(variances[at]) + floor;
         const double keep = excess / (excess + own);
-        shrunk.value[at] =
-            static_cast<float>(static_cast<double>(offset) + keep_mean * m +
-                               keep * (static_cast<double>(values[at] - offset) - m));
-        shrunk.variance[at] = static_cast<float>(keep * own + (1.0 - keep) * keep_mean * error2);
+        const auto measured = static_cast<double>(values[at] - offset);
+        const double shift = keep_mean * m + keep * (measured - m) - measured;
+        const double most = kMostSigmas * std::sqrt(own);
+        const bool is_limited = std::abs(shift) > most;
+        shrunk.value[at] = static_cast<float>(static_cast<double>(offset) + measured +
+                                              std::clamp(shift, -most, most));
+        shrunk.variance[at] =
+            static_cast<float>(is_limited ? own : keep * own + (1.0 - keep) * keep_mean * error2);
     }
     return shrunk;
 }

@@ -23,8 +23,9 @@ struct Shrunk {
 
 /// Shrinks each value towards the inverse-variance mean of the samples within `radius`, by how much
 /// the scatter there exceeds the noise. With `toward_zero` (values are deviations from a pooled
-/// estimate) that mean is itself drawn to zero unless it stands out of its own noise. Values whose
-/// variance is not finite and positive take no part and come back unchanged.
+/// estimate) that mean is itself drawn to zero unless it stands out of its own noise. No value is
+/// moved by more than three of its own standard deviations. Values whose variance is not finite and
+/// positive take no part and come back unchanged.
 Shrunk shrink_locally(const SampleGrid& grid,
                       std::span<const float> values,
                       std::span<const float> variances,
