@@ -10,7 +10,6 @@
 #include "appearance/subsurface/translucent_paint.h"
 #include "core/error.h"
 #include "core/json.h"
-#include "core/json_ranges.h"
 #include "core/paths.h"
 
 namespace livery {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "appearance/bound_bsdf.h"
+#include "appearance/paint_bsdf.h"
 #include "appearance/parameter_table.h"
 
 namespace livery {

@@ -1,4 +1,5 @@
-// The figures by which people who make paint know it: colour at five angles, flop, gloss.
+// The figures by which people who make paint know it: colour at five angles, flop, gloss; with a
+// glossmeter's optics.
 #pragma once
 
 #include <array>
@@ -10,6 +11,16 @@
 #include "appearance/material.h"
 
 namespace livery {
+
+/// Of polished black glass, the standard's 100.
+inline constexpr double kGlossStandardIndex = 1.567;
+
+/// Share of unpolarised light that a smooth interface of that index throws back (Fresnel).
+double dielectric_reflectance(double cosine, double index);
+
+/// By how much the interface of an index whose reflectance along the normal is `f0` throws back
+/// more than Schlick's approximation says, at the cosine between light and half vector.
+double fresnel_over_schlick(double f0, double cosine);
 
 /// The eye's angles from the mirror direction toward the light, in the plane of light and normal;
 /// light falls in at 45 degrees (ASTM E2194).

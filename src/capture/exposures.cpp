@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
-#include "core/pictures/read_exposure.h"
-#include "core/usual.h"
+#include "core/pictures/exposure_settings.h"
+#include "core/statistics.h"
 
 namespace livery {
 

@@ -1,7 +1,7 @@
 #include "capture/sphere_fields.h"
 
 #include "core/error.h"
-#include "core/json_ranges.h"
+#include "core/json.h"
 #include "core/paths.h"
 
 namespace livery {

@@ -5,7 +5,7 @@
 #include "capture/sphere_fields.h"
 #include "capture/spot_folder.h"
 #include "core/error.h"
-#include "core/json_ranges.h"
+#include "core/json.h"
 #include "core/paths.h"
 
 namespace livery {

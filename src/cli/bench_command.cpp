@@ -9,15 +9,14 @@
 #include "cli/command.h"
 #include "core/error.h"
 #include "core/paths.h"
-#include "core/text/marked_block.h"
+#include "core/text/markup.h"
 #include "ledger/accuracy/accuracy.h"
 #include "ledger/accuracy/chain.h"
 #include "ledger/budget_check.h"
 #include "ledger/effect_errors.h"
 #include "ledger/geometry_errors.h"
 #include "ledger/speed.h"
-#include "ledger/speed_plot.h"
-#include "ledger/speed_table.h"
+#include "ledger/speed_report.h"
 #include "ledger/stability.h"
 
 namespace livery {
@@ -129,37 +128,27 @@ Command bench_command() {
          "DIR",
          "also write bench.json and the plots speed.svg and accuracy.svg there, pass-costs.json, "
          "accuracy.csv, accuracy.json, chain.csv, and effect-errors.json",
-         &arguments->out,
-         false,
-         {}},
+         &arguments->out},
         {"--markdown",
          "FILE",
          "also write its tables between the bench's marks in this file",
-         &arguments->markdown,
-         false,
-         {}},
+         &arguments->markdown},
         {"--quick",
          "",
          "some minutes at most: the sweep of two sizes and one quality, a hundredth of the inputs, "
          "the smallest and largest errors; predictions stay. costs: some seconds, in which the "
          "costs that come with the program are scaled to this machine",
-         &arguments->quick,
-         false,
-         {}},
+         &arguments->quick},
         {"--references",
          "DIR",
          "accuracy: where traced pictures and rows are kept, to go on from and to share between "
          "shards (default: in the user's folder)",
-         &arguments->references,
-         false,
-         {}},
+         &arguments->references},
         {"--shard",
          "I/N",
          "accuracy: measure every N-th scene, from the I-th on; runs that share --references add "
          "up",
-         &arguments->shard,
-         false,
-         {}},
+         &arguments->shard},
         {"--suite",
          "NAME",
          "costs (of passes: what predictions need), speed (those and every other stage), accuracy "

@@ -6,11 +6,10 @@
 #include <fmt/format.h>
 
 #include "capture/captures_folder.h"
+#include "cli/capture_options.h"
 #include "cli/command.h"
-#include "cli/patterns_option.h"
 #include "core/error.h"
 #include "jobs/calibrate/calibration_folder.h"
-#include "jobs/calibrate/calibration_origin.h"
 #include "jobs/captured_calibration.h"
 #include "scene/library.h"
 
@@ -61,34 +60,26 @@ Command calibrate_color_command() {
     command.summary = "colour photographs -> compensation";
     command.example = "livery calibrate color --captures captures --out calibration";
     command.options = {
-        {"--captures", "DIR", "photographs with manifest.json", &arguments->captures, true, {}},
+        {"--captures", "DIR", "photographs with manifest.json", &arguments->captures, true},
         patterns_option(arguments->patterns),
         {"--map",
          "FILE",
          "projector pixel -> camera pixel, .exr (default: decoded from the same folder)",
-         &arguments->map,
-         false,
-         {}},
+         &arguments->map},
         {"--camera-to-xyz",
          "FILE",
          "matrix or measured primaries (default: camera RGB is linear Rec.709)",
-         &arguments->camera_to_xyz,
-         false,
-         {}},
+         &arguments->camera_to_xyz},
         {"--camera",
          "FILE",
          "camera file of the projector, kept in the folder for render and the desktop",
-         &arguments->camera,
-         false,
-         {}},
+         &arguments->camera},
         {"--product",
          "FILE|NAME",
          "the mock-up, with --camera: what the photographs do not see is predicted",
-         &arguments->product,
-         false,
-         {}},
+         &arguments->product},
         unit_option(arguments->unit),
-        {"--out", "DIR", "calibration folder", &arguments->out, true, {}},
+        {"--out", "DIR", "calibration folder", &arguments->out, true},
         {"--mode",
          "MODE",
          "paper or robust (default robust)",

@@ -10,19 +10,17 @@
 
 #include "calibration/preflight.h"
 #include "capture/patient_camera.h"
+#include "cli/capture_options.h"
 #include "cli/capture_report.h"
 #include "cli/command.h"
 #include "cli/console.h"
-#include "cli/data_sheet_options.h"
 #include "cli/monitor_projector.h"
-#include "cli/places_option.h"
 #include "core/error.h"
 #include "core/paths.h"
 #include "gl/window.h"
 #include "jobs/calibrate/bench_calibration.h"
 #include "jobs/calibrate/calibration_folder.h"
 #include "jobs/calibrate/staged_calibration.h"
-#include "jobs/camera_curve.h"
 #include "jobs/camera_to_xyz_file.h"
 #include "jobs/capture_bench.h"
 #include "jobs/watched_captures.h"
@@ -381,60 +379,38 @@ Command capture_command() {
     command.summary = "show the patterns, photograph them with a camera, and calibrate";
     command.example = "livery capture --camera video:0 --monitor 2 --out captures";
     command.options = {
-        {"--list", "", "name the cameras and monitors that there are", &arguments->list, false, {}},
+        {"--list", "", "name the cameras and monitors that there are", &arguments->list},
         {"--camera",
          "CAMERA",
          "bench[:NAME], tethered[:PORT], video:NUMBER|FILE|ADDRESS, or folder:DIR for any other "
          "camera",
-         &arguments->camera,
-         false,
-         {}},
-        {"--monitor", "N", "the projector's number or name", &arguments->monitor, false, {}},
+         &arguments->camera},
+        {"--monitor", "N", "the projector's number or name", &arguments->monitor},
         {"--out",
          "DIR",
          "photographs, as a captures folder; a capture that was stopped goes on",
-         &arguments->out,
-         false,
-         {}},
-        {"--calibration", "DIR", "write the calibration there", &arguments->calibration, false, {}},
-        {"--preflight",
-         "",
-         "only find out whether the bench is fit",
-         &arguments->preflight_only,
-         false,
-         {}},
-        {"--no-preflight",
-         "",
-         "capture without looking first",
-         &arguments->without_preflight,
-         false,
-         {}},
-        {"--product", "FILE|NAME", "the mock-up, with --pose", &arguments->product, false, {}},
+         &arguments->out},
+        {"--calibration", "DIR", "write the calibration there", &arguments->calibration},
+        {"--preflight", "", "only find out whether the bench is fit", &arguments->preflight_only},
+        {"--no-preflight", "", "capture without looking first", &arguments->without_preflight},
+        {"--product", "FILE|NAME", "the mock-up, with --pose", &arguments->product},
         {"--pose",
          "FILE",
          "the projector's camera file: the mock-up alone is lit, and hidden pixels are predicted",
-         &arguments->pose,
-         false,
-         {}},
+         &arguments->pose},
         {"--camera-to-xyz",
          "FILE",
          "matrix or measured primaries (default: camera RGB is linear Rec.709)",
-         &arguments->camera_to_xyz,
-         false,
-         {}},
+         &arguments->camera_to_xyz},
         {"--again",
          "ROLE...",
          "take these pictures of the capture in --out again",
-         &arguments->again,
-         false,
-         {}},
+         &arguments->again},
         {"--fit-response",
          "",
          "find the curve of a camera that gives no RAW, and keep it",
-         &arguments->fit_response,
-         false,
-         {}},
-        {"--anew", "", "take all of the capture in --out again", &arguments->anew, false, {}},
+         &arguments->fit_response},
+        {"--anew", "", "take all of the capture in --out again", &arguments->anew},
         {"--redo",
          "STAGE",
          "take this stage of the capture in --out again, and what follows from it",
@@ -450,16 +426,12 @@ Command capture_command() {
         {"--check",
          "",
          "show corrected colours afterwards, and photograph them",
-         &arguments->check,
-         false,
-         {}},
+         &arguments->check},
         places_option(arguments->places),
         {"--every",
          "S",
          "with folder: seconds that each picture is shown (default 5)",
-         &arguments->every_s,
-         false,
-         {}},
+         &arguments->every_s},
     };
     add_data_sheet_options(command.options, arguments->sheets);
     command.run = [arguments](const CommonOptions&, const Progress& progress) {

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include "jobs/calibrate/calibration_folder.h"
-#include "jobs/calibrate/calibration_origin.h"
 
 namespace livery {
 

@@ -5,8 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "cli/capture_options.h"
 #include "cli/command.h"
-#include "cli/patterns_option.h"
 #include "jobs/file_check.h"
 
 namespace livery {
@@ -21,7 +21,7 @@ Command check_command() {
     command.name = "check";
     command.summary = "open files of any kind the program reads, and say what is wrong with them";
     command.example = "livery check car.glb paint.json captures/";
-    command.options = {{"files", "FILE...", "files or folders", &arguments->files, true, {}},
+    command.options = {{"files", "FILE...", "files or folders", &arguments->files, true},
                        patterns_option(arguments->patterns)};
     command.run = [arguments](const CommonOptions&, const Progress& progress) {
         Outcome outcome;

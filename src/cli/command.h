@@ -38,7 +38,7 @@ struct Option {
     std::string help;   ///< one line, with the default
     std::variant<std::string*, int*, double*, bool*, std::vector<std::string>*> target;
     bool required = false;
-    std::vector<std::string> choices;  ///< when not empty, only these
+    std::vector<std::string> choices = {};  ///< when not empty, only these
 };
 
 /// What a command found: figures for scripts, a text for people.

@@ -5,11 +5,11 @@
 #include <fmt/format.h>
 
 #include "cli/command.h"
-#include "cli/design_white.h"
+#include "cli/render/frame_options.h"
 #include "compensation/compensation.h"
 #include "core/error.h"
 #include "core/image_io.h"
-#include "jobs/render/target_picture.h"
+#include "jobs/render/render.h"
 #include "scene/mockup_mask.h"
 
 namespace livery {
@@ -26,14 +26,13 @@ Command compensate_command() {
     command.example =
         "livery compensate --calibration demo/calibration --target wanted.exr --out input.png";
     command.options = {
-        {"--calibration", "DIR", "calibration folder", &arguments->calibration, true, {}},
+        {"--calibration", "DIR", "calibration folder", &arguments->calibration, true},
         {"--target",
          "FILE",
          "wanted picture, .exr, linear Rec.709, 1 = design white",
          &arguments->target,
-         true,
-         {}},
-        {"--out", "FILE", "projector input, .png", &arguments->out, true, {}},
+         true},
+        {"--out", "FILE", "projector input, .png", &arguments->out, true},
         {"--gamut",
          "HOW",
          "strict: clip; preserve: keep the hue (default strict)",
@@ -44,9 +43,7 @@ Command compensate_command() {
          "PERCENT",
          "percentile, over what the target covers, of the brightest neutral that becomes 1 "
          "(default 20)",
-         &arguments->design_white,
-         false,
-         {}},
+         &arguments->design_white},
     };
     command.run = [arguments](const CommonOptions&, const Progress& progress) {
         check_percentile("--design-white", arguments->design_white);

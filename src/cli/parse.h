@@ -25,4 +25,7 @@ std::string help_text(const std::vector<Command>& commands, const std::string& n
 /// What every command takes, bound to `common`.
 std::vector<Option> common_options(CommonOptions& common);
 
+/// livery(1) in the man macros: every command with its options, files, environment, exit status.
+std::string man_page(const std::vector<Command>& commands);
+
 }  // namespace livery

@@ -6,8 +6,8 @@
 
 #include "calibration/correspondence/fringes.h"
 #include "capture/patterns_folder.h"
+#include "cli/capture_options.h"
 #include "cli/command.h"
-#include "cli/places_option.h"
 
 namespace livery {
 
@@ -30,8 +30,8 @@ Command patterns_command() {
     command.summary = "write the pictures to project, numbered, with manifest.json";
     command.example = "livery patterns --projector 1280x800 --out patterns";
     command.options = {
-        {"--projector", "WxH", "the projector's resolution", &arguments->projector, true, {}},
-        {"--out", "DIR", "where they go", &arguments->out, true, {}},
+        {"--projector", "WxH", "the projector's resolution", &arguments->projector, true},
+        {"--out", "DIR", "where they go", &arguments->out, true},
         {"--kind",
          "KIND",
          "geometry, color or all (default all)",
@@ -39,13 +39,8 @@ Command patterns_command() {
          false,
          {"geometry", "color", "all"}},
         places_option(arguments->places),
-        {"--dark", "S", "drive of the dark grey picture (default 0)", &arguments->dark, false, {}},
-        {"--bright",
-         "T",
-         "drive of the bright grey picture (default 255)",
-         &arguments->bright,
-         false,
-         {}},
+        {"--dark", "S", "drive of the dark grey picture (default 0)", &arguments->dark},
+        {"--bright", "T", "drive of the bright grey picture (default 255)", &arguments->bright},
     };
     command.run = [arguments](const CommonOptions&, const Progress& progress) {
         const glm::ivec2 size = parse_size("--projector", arguments->projector);

@@ -7,10 +7,7 @@
 #include "appearance/material_library.h"
 #include "appearance/subsurface/translucent_material.h"
 #include "cli/command.h"
-#include "jobs/environment/simulated_ball.h"
 #include "jobs/simulated_captures.h"
-#include "jobs/simulated_sphere.h"
-#include "jobs/spot/simulated_spot.h"
 
 namespace livery {
 
@@ -206,50 +203,33 @@ Command photograph_command() {
         {"--bench",
          "FILE",
          "a bench file or a shipped bench's name (default: default)",
-         &arguments->bench,
-         false,
-         {}},
-        {"--patterns", "DIR", "patterns with their manifest.json", &arguments->patterns, false, {}},
+         &arguments->bench},
+        {"--patterns", "DIR", "patterns with their manifest.json", &arguments->patterns},
         {"--sphere",
          "FILE|NAME",
          "instead of patterns: a sphere of that paint, as livery measure brdf takes it",
-         &arguments->sphere,
-         false,
-         {}},
+         &arguments->sphere},
         {"--ball",
          "FILE|NAME",
          "instead of patterns: a mirror ball in that environment, as livery measure environment "
          "takes it",
-         &arguments->ball,
-         false,
-         {}},
+         &arguments->ball},
         {"--spot",
          "FILE|NAME",
          "instead of patterns: a spot of light on that translucent material, as livery measure "
          "profile takes it",
-         &arguments->spot,
-         false,
-         {}},
-        {"--views",
-         "N",
-         "with --ball: from so many sides, 1 to 3 (default: 2)",
-         &arguments->views,
-         false,
-         {}},
-        {"--out", "DIR", "captures folder", &arguments->out, true, {}},
+         &arguments->spot},
+        {"--views", "N", "with --ball: from so many sides, 1 to 3 (default: 2)", &arguments->views},
+        {"--out", "DIR", "captures folder", &arguments->out, true},
         {"--size",
          "WxH",
          "projector resolution (default: as the bench file says); with --sphere, --ball "
          "and --spot the picture's (default: 512x512, 1024x1024, 1024x1024)",
-         &arguments->size,
-         false,
-         {}},
+         &arguments->size},
         {"--exposure-s",
          "S",
          "exposure in seconds (default 0: as the bench meters)",
-         &arguments->exposure_s,
-         false,
-         {}},
+         &arguments->exposure_s},
     };
     command.run = [arguments](const CommonOptions& common, const Progress& progress) {
         return chosen(*arguments)(*arguments, common, progress);

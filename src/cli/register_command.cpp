@@ -4,8 +4,8 @@
 
 #include <fmt/format.h>
 
+#include "cli/capture_options.h"
 #include "cli/command.h"
-#include "cli/patterns_option.h"
 #include "core/error.h"
 #include "jobs/registration.h"
 #include "scene/library.h"
@@ -142,21 +142,17 @@ Command calibrate_register_command() {
         "livery calibrate register --mesh car --captures captures --calibration geometry --out "
         "registered";
     command.options = {
-        {"--mesh", "FILE", "mesh or product of the mock-up", &arguments->mesh, true, {}},
+        {"--mesh", "FILE", "mesh or product of the mock-up", &arguments->mesh, true},
         unit_option(arguments->unit),
         {"--captures",
          "DIR...",
          "Gray code photographs, a folder a position of the camera",
-         &arguments->captures,
-         false,
-         {}},
+         &arguments->captures},
         patterns_option(arguments->patterns),
         {"--points",
          "FILE",
          "picked points, CSV x_mm,y_mm,z_mm,u_px,v_px; with --captures a place to begin",
-         &arguments->points,
-         false,
-         {}},
+         &arguments->points},
         {"--view",
          "VIEW",
          "picture that the points are of: camera, projector or either (default: the one they fit)",
@@ -167,21 +163,13 @@ Command calibrate_register_command() {
          "DIR...",
          "camera.json and projector.json, one folder for all captures or one for each",
          &arguments->calibration,
-         true,
-         {}},
+         true},
         {"--free-scale",
          "",
          "the mock-up may be another size than its mesh, by up to a tenth",
-         &arguments->scale_free,
-         false,
-         {}},
-        {"--fixed-lens",
-         "",
-         "keep lenses and stereo pose as calibrated",
-         &arguments->lens_fixed,
-         false,
-         {}},
-        {"--out", "DIR", "pose.json, camera.json, projector.json", &arguments->out, true, {}},
+         &arguments->scale_free},
+        {"--fixed-lens", "", "keep lenses and stereo pose as calibrated", &arguments->lens_fixed},
+        {"--out", "DIR", "pose.json, camera.json, projector.json", &arguments->out, true},
     };
     command.run = [arguments](const CommonOptions&, const Progress& progress) {
         if (arguments->captures.empty() && arguments->points.empty())
@@ -233,34 +221,27 @@ Command calibrate_scan_command() {
          "DIR...",
          "Gray code photographs, a folder a position of the camera",
          &arguments->captures,
-         true,
-         {}},
+         true},
         patterns_option(arguments->patterns),
         {"--calibration",
          "DIR...",
          "camera.json and projector.json, one folder for all captures or one for each",
          &arguments->calibration,
-         true,
-         {}},
+         true},
         {"--spacing-mm",
          "MM",
          "distance of neighbouring vertices (default 0.3; a projector pixel at least)",
-         &arguments->spacing_mm,
-         false,
-         {}},
+         &arguments->spacing_mm},
         {"--without-planes",
          "N",
          "leave out so many planes (table, wall), the largest first, and what lies behind them; "
          "flat sides of the product are none (default 0)",
-         &arguments->without_planes,
-         false,
-         {}},
+         &arguments->without_planes},
         {"--out",
          "DIR",
          "scan.ply, camera.json, projector.json; from fringes also direct.exr, global.exr",
          &arguments->out,
-         true,
-         {}},
+         true},
     };
     command.run = [arguments](const CommonOptions&, const Progress& progress) {
         if (!(arguments->spacing_mm > 0.0 && arguments->spacing_mm < 1000.0))

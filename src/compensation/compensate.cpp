@@ -10,9 +10,9 @@
 #include <xmmintrin.h>
 #endif
 
-#include "compensation/dither.h"
 #include "compensation/drive_table.h"
 #include "compensation/gamut.h"
+#include "compensation/kernel.h"
 #include "core/error.h"
 #include "core/parallel.h"
 

@@ -10,9 +10,9 @@
 #include <fmt/format.h>
 
 #include "compensation/compensate.h"
-#include "compensation/dither.h"
 #include "compensation/drive_table.h"
 #include "compensation/gamut.h"
+#include "compensation/kernel.h"
 #include "core/error.h"
 #include "gl/program.h"
 

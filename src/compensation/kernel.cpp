@@ -2,7 +2,6 @@
 
 #include <vector>
 
-#include "compensation/dither.h"
 #include "core/mutation.h"
 
 // One source, inlined into a wrapper for each instruction set. Contraction is off everywhere, so

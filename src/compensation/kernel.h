@@ -5,6 +5,18 @@
 #include <cstddef>
 #include <cstdint>
 
+namespace livery::dither {
+
+inline constexpr std::uint32_t kPerColumn = 3242174889u;  ///< 2^32 / 1.32471795724...
+inline constexpr std::uint32_t kPerRow = 2447445414u;     ///< 2^32 / 1.32471795724...^2
+
+/// In [0, 1): what is added before cutting to whole levels.
+inline float threshold(std::uint32_t phase) {
+    return static_cast<float>(static_cast<std::int32_t>(phase >> 8u)) * 0x1p-24f;
+}
+
+}  // namespace livery::dither
+
 namespace livery {
 struct NonAdditive;
 }

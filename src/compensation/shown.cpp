@@ -13,7 +13,7 @@
 #include "compensation/drive_table.h"
 #include "core/error.h"
 #include "core/parallel.h"
-#include "core/pictures/colour_differences.h"
+#include "core/pictures/picture_means.h"
 #include "core/statistics.h"
 
 namespace livery {

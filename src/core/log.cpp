@@ -12,7 +12,7 @@
 #include <unistd.h>
 
 #include "core/error.h"
-#include "core/utc.h"
+#include "core/time.h"
 
 namespace livery {
 

@@ -1,9 +1,13 @@
 #include "core/parallel.h"
 
 #include <atomic>
+#include <cstdlib>
 #include <memory>
 #include <mutex>
 #include <thread>
+
+#include <sys/resource.h>
+#include <unistd.h>
 
 #if defined(__SANITIZE_THREAD__)
 #include <sanitizer/tsan_interface.h>
@@ -14,7 +18,6 @@
 #include <tbb/parallel_for.h>
 
 #include "core/error.h"
-#include "core/thread_priority.h"
 
 namespace livery {
 
@@ -76,6 +79,12 @@ void parallel_for(std::size_t count,
                           is_done_before(order);
                       });
     comes_after(order);
+}
+
+void set_nice_of_this_thread(int nice) {
+    static const bool equal = std::getenv("LIVERY_EQUAL_PRIORITIES") != nullptr;
+    // On Linux a "process" here is a thread; 0 is the calling one.
+    if (!equal) setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), nice);
 }
 
 }  // namespace livery

@@ -2,8 +2,11 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <numbers>
+#include <utility>
+#include <vector>
 
 namespace livery {
 
@@ -55,6 +58,14 @@ inline std::uint32_t hash_3d(std::uint32_t x, std::uint32_t y, std::uint32_t z) 
     y += z * x;
     z += x * y;
     return x ^ (y * 0x9e3779b9u) ^ z;
+}
+
+/// Each order is equally likely (Fisher and Yates).
+template <typename T>
+void shuffle(std::vector<T>& values, Random& random) {
+    for (std::size_t k = values.size(); k > 1; --k) {
+        std::swap(values[k - 1], values[random.below(static_cast<std::uint32_t>(k))]);
+    }
 }
 
 }  // namespace livery

@@ -16,7 +16,7 @@
 #include <unistd.h>
 
 #include "core/error.h"
-#include "core/system/start_program.h"
+#include "core/system/programs.h"
 #include "core/utf8.h"
 
 namespace livery {

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "core/utc.h"
+#include "core/time.h"
 #include "evaluation/ballot_log.h"
 #include "evaluation/ballot_tables.h"
 

@@ -5,7 +5,7 @@
 
 #include "core/error.h"
 #include "core/paths.h"
-#include "core/utc.h"
+#include "core/time.h"
 #include "evaluation/ballot_log.h"
 #include "evaluation/ballot_rows.h"
 #include "evaluation/ballot_tables.h"

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "core/error.h"
-#include "core/shuffle.h"
+#include "core/random.h"
 #include "evaluation/ballots.h"
 #include "evaluation/csv_field.h"
 

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "core/error.h"
-#include "core/shuffle.h"
+#include "core/random.h"
 
 namespace livery {
 

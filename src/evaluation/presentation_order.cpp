@@ -5,7 +5,7 @@
 #include <numeric>
 
 #include "core/error.h"
-#include "core/shuffle.h"
+#include "core/random.h"
 #include "evaluation/design_codes.h"
 #include "evaluation/statistics/vote_counts.h"
 

@@ -2,7 +2,7 @@
 #include <string>
 
 #include "core/error.h"
-#include "core/utc.h"
+#include "core/time.h"
 #include "evaluation/ballot_log.h"
 #include "evaluation/ballot_rows.h"
 #include "evaluation/ballot_tables.h"

@@ -52,4 +52,8 @@ class HeadlessContext : public GlContext {
     std::unique_ptr<State> state_;
 };
 
+/// Vendor, renderer, versions and limits of the context that is current on this thread, a line
+/// each.
+std::string context_facts();
+
 }  // namespace livery

@@ -3,7 +3,7 @@
 #include <epoxy/gl.h>
 
 #include "gl/check.h"
-#include "gl/counters.h"
+#include "gl/timer.h"
 
 namespace livery {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "core/error.h"
 #include "gl/check.h"
-#include "gl/counters.h"
+#include "gl/timer.h"
 
 namespace livery {
 namespace gl_detail {

@@ -1,8 +1,11 @@
 #include "gl/timer.h"
 
+#include <initializer_list>
+
 #include <epoxy/gl.h>
 
 namespace livery {
+
 namespace gl_detail {
 void delete_query(unsigned name) { glDeleteQueries(1, &name); }
 }  // namespace gl_detail
@@ -34,6 +37,34 @@ std::uint64_t Query::time_ns() const {
 
 double GlTimer::milliseconds() const {
     return static_cast<double>(end_.time_ns() - begin_.time_ns()) * 1e-6;
+}
+
+namespace gl_detail {
+
+GlCounters& counted() {
+    thread_local GlCounters counters;
+    return counters;
+}
+
+}  // namespace gl_detail
+
+const GlCounters& gl_counters() { return gl_detail::counted(); }
+
+GlCounters operator-(const GlCounters& later, const GlCounters& earlier) {
+    GlCounters apart;
+    for (const auto member : {&GlCounters::programs,
+                              &GlCounters::shader_bytes,
+                              &GlCounters::textures,
+                              &GlCounters::texture_bytes,
+                              &GlCounters::buffers,
+                              &GlCounters::buffer_bytes,
+                              &GlCounters::framebuffers,
+                              &GlCounters::upload_bytes,
+                              &GlCounters::draws,
+                              &GlCounters::dispatches}) {
+        apart.*member = later.*member - earlier.*member;
+    }
+    return apart;
 }
 
 }  // namespace livery

@@ -1,4 +1,4 @@
-// How long OpenGL worked, by its own clock.
+// How long OpenGL worked, by its own clock, and what was asked of it, counted at its calls.
 #pragma once
 
 #include <cstdint>
@@ -36,5 +36,28 @@ class GlTimer {
   private:
     Query begin_, end_;
 };
+
+struct GlCounters {
+    std::uint64_t programs = 0;       ///< linked
+    std::uint64_t shader_bytes = 0;   ///< of source, compiled
+    std::uint64_t textures = 0;       ///< made
+    std::uint64_t texture_bytes = 0;  ///< of all their layers and levels
+    std::uint64_t buffers = 0;        ///< made
+    std::uint64_t buffer_bytes = 0;
+    std::uint64_t framebuffers = 0;  ///< made
+    std::uint64_t upload_bytes = 0;  ///< to textures and buffers
+    std::uint64_t draws = 0;
+    std::uint64_t dispatches = 0;  ///< of compute programs
+
+    bool operator==(const GlCounters&) const = default;
+};
+GlCounters operator-(const GlCounters& later, const GlCounters& earlier);
+
+/// Of this thread so far: a context is current on one thread only.
+const GlCounters& gl_counters();
+
+namespace gl_detail {
+GlCounters& counted();
+}
 
 }  // namespace livery

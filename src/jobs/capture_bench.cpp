@@ -1,21 +1,80 @@
 #include "jobs/capture_bench.h"
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <stdexcept>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
+#include "calibration/camera_response.h"
+#include "calibration/nothing_shown.h"
+#include "capture/camera.h"
 #include "capture/tethered_camera.h"
+#include "capture/transfer.h"
 #include "capture/video_camera.h"
 #include "core/colour.h"
+#include "core/error.h"
 #include "core/paths.h"
 #include "core/pictures/white_balance.h"
-#include "jobs/camera_curve.h"
 #include "scene/library.h"
 
 namespace livery {
+
+namespace {
+
+std::filesystem::path file_of(Camera& camera) {
+    std::string name = camera.state().model;
+    if (name.empty()) return {};
+    for (char& c : name)
+        if (!std::isalnum(static_cast<unsigned char>(c))) c = '-';
+    return user_folder() / "cameras" / (name + ".json");
+}
+
+std::string transfer_of(Camera& camera) {
+    const auto kept = kept_camera_curve(camera);
+    return kept ? kept->string() : "srgb";
+}
+
+bool are_eight_bits(const std::vector<Photograph>& photographs) {
+    return std::all_of(photographs.begin(), photographs.end(), [](const Photograph& photograph) {
+        return photograph.saturates_at == 255.0 && photograph.image.channels == 3;
+    });
+}
+
+}  // namespace
+
+std::optional<std::filesystem::path> kept_camera_curve(Camera& camera) {
+    const std::filesystem::path file = file_of(camera);
+    std::error_code error;
+    if (file.empty() || !std::filesystem::exists(file, error)) return std::nullopt;
+    return file;
+}
+
+CameraCurve fit_camera_curve(
+    Camera& camera, const BenchPorts& ports, int width, int height, const Progress& progress) {
+    const std::filesystem::path file = file_of(camera);
+    const std::string before = transfer_of(camera);
+    try {
+        camera.use_transfer("linear");
+        const std::vector<Photograph> photographs =
+            photograph_exposures(ports, width, height, progress);
+        if (file.empty() || !are_eight_bits(photographs))
+            throw Refused("this camera has no curve: its numbers are the sensor's",
+                          "nothing needs to be done");
+        const CameraResponse response = fit_camera_response(photographs);
+        make_output_folder(file.parent_path());
+        write_response(file, response.linear_from_file);
+        camera.use_transfer(file.string());
+        return {file, response.residual};
+    } catch (...) {
+        camera.use_transfer(before);
+        throw;
+    }
+}
 
 namespace {
 
@@ -173,6 +232,53 @@ CaptureBench open_capture_bench(const CameraChoice& choice,
     bench.curve = kept_camera_curve(*bench.camera);
     if (bench.curve) bench.camera->use_transfer(bench.curve->string());
     return bench;
+}
+
+PortSeconds run_recorded(Recording& recording,
+                         const BenchPorts& bench,
+                         const std::function<void(const BenchPorts&)>& work) {
+    // Until it is made anew it is not a whole captures folder.
+    std::error_code ignored;
+    std::filesystem::remove(recording.folder() / "manifest.json", ignored);
+    PortSeconds seconds;
+    BenchPorts ports = bench;
+    ports.show = [&](const Image8& drive) { timed(seconds.projector, [&] { bench.show(drive); }); };
+    ports.photograph = [&](double exposure_s) {
+        return timed(seconds.camera, [&] { return bench.photograph(exposure_s); });
+    };
+    try {
+        work(recording.ports(ports));
+        return seconds;
+    } catch (const CameraFault&) {
+        recording.flush();  // There is no photograph to blame.
+        throw;
+    } catch (const NothingShown& nothing) {
+        recording.drop_newest(nothing.pictures());
+        throw;
+    } catch (const Refused&) {
+        recording.drop_last();
+        throw;
+    } catch (const FileError&) {
+        recording.drop_last();
+        throw;
+    } catch (const Cancelled&) {
+        recording.flush();
+        throw;
+    }
+}
+
+LiveResult calibrate_recorded(Recording& recording,
+                              const BenchPorts& bench,
+                              const LiveOptions& options,
+                              const Progress& progress) {
+    LiveResult result;
+    const PortSeconds seconds = run_recorded(recording, bench, [&](const BenchPorts& ports) {
+        result = calibrate_live(ports, options, progress);
+    });
+    result.camera_seconds = seconds.camera;
+    result.projector_seconds = seconds.projector;
+    recording.write_manifest(options.width, options.height, result.kept);
+    return result;
 }
 
 }  // namespace livery

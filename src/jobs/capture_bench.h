@@ -1,19 +1,38 @@
-// What a capture is made with: a camera of any kind, and the simulated bench where it is one.
+// What a capture is made with: a camera of any kind with its curve, the simulated bench, and the
+// capture with everything kept.
 #pragma once
 
+#include <chrono>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "calibration/colour/colour.h"
 #include "capture/camera.h"
+#include "capture/recording.h"
 #include "core/bench_ports.h"
 #include "core/progress.h"
 #include "scene/product.h"
 #include "twin/bench.h"
 
 namespace livery {
+
+/// The file of the curve that was fitted for this model; none: none was. Throws CameraFault.
+std::optional<std::filesystem::path> kept_camera_curve(Camera& camera);
+
+struct CameraCurve {
+    std::filesystem::path file;  ///< a response file (docs/files.md)
+    double residual = 0.0;       ///< as CameraResponse
+};
+/// Shows white at width x height, photographs it at other exposures, fits the curve, keeps it, and
+/// reads the camera's 8-bit numbers with it from here on. Throws Refused where the camera gives RAW
+/// or its photographs do not follow their exposures, FileError, and what the ports throw; the
+/// camera then reads as before.
+CameraCurve fit_camera_curve(
+    Camera& camera, const BenchPorts& ports, int width, int height, const Progress& progress);
 
 /// As people write it: "bench" or "bench:NAME|FILE", "tethered" (the first on USB) or
 /// "tethered:PORT", "video:N|FILE|ADDRESS", "folder:DIR".
@@ -55,5 +74,40 @@ struct CaptureBench {
 CaptureBench open_capture_bench(const CameraChoice& choice,
                                 std::shared_ptr<const Product> product,
                                 const Progress& progress);
+
+/// Adds the seconds that a call takes, also where it throws.
+template <typename Call>
+auto timed(double& seconds, const Call& call) {
+    const auto start = std::chrono::steady_clock::now();
+    struct Add {
+        double& seconds;
+        std::chrono::steady_clock::time_point start;
+        ~Add() {
+            seconds +=
+                std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+        }
+    } add{seconds, start};
+    return call();
+}
+
+/// Time within the camera's and the projector's ports.
+struct PortSeconds {
+    double camera = 0.0, projector = 0.0;
+};
+
+/// Runs `work` with the bench's ports through the recording. The photograph over which it fails (of
+/// another size, automatically exposed) is dropped, so that the next run takes it anew, as are
+/// those of pictures that are not known to have arrived (NothingShown); the others stay. The folder
+/// has no manifest.json until somebody writes it anew. Throws as `work` and Recording do.
+PortSeconds run_recorded(Recording& recording,
+                         const BenchPorts& bench,
+                         const std::function<void(const BenchPorts&)>& work);
+
+/// calibrate_live() that way. Afterwards the recording is a captures folder with its manifest.json.
+/// Throws as calibrate_live() and Recording do, and CameraFault.
+LiveResult calibrate_recorded(Recording& recording,
+                              const BenchPorts& bench,
+                              const LiveOptions& options,
+                              const Progress& progress = {});
 
 }  // namespace livery

@@ -12,9 +12,9 @@
 #include "core/image_io.h"
 #include "jobs/calibrate/bench_calibration.h"
 #include "jobs/calibrate/calibration_folder.h"
-#include "jobs/eye_comparison.h"
+#include "jobs/comparison.h"
 #include "scene/mockup_mask.h"
-#include "twin/chart.h"
+#include "twin/sensor.h"
 
 namespace livery {
 

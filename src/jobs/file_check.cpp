@@ -25,7 +25,7 @@
 #include "core/json.h"
 #include "core/paths.h"
 #include "core/text/csv.h"
-#include "jobs/calibrate/calibration_origin.h"
+#include "jobs/calibrate/calibration_folder.h"
 #include "jobs/camera_to_xyz_file.h"
 #include "jobs/files_elsewhere.h"
 #include "jobs/pair_geometry.h"

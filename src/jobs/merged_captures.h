@@ -1,10 +1,12 @@
-// The photographs of one scene as one picture of its light.
+// The photographs of one scene as one picture of its light, and the part of it that a sphere fills.
 #pragma once
 
+#include <filesystem>
 #include <functional>
 #include <vector>
 
 #include "calibration/captures/exposure_merge.h"
+#include "calibration/sphere/sphere_outline.h"
 #include "capture/captures_folder.h"
 #include "core/progress.h"
 #include "scene/view.h"
@@ -26,5 +28,19 @@ struct MergedCaptures {
 MergedCaptures merge_captures(const std::vector<Capture>& captures,
                               const std::function<Photograph(const Capture&)>& load,
                               const Progress& progress = {});
+
+/// The part of a photograph that the sphere fills, with a margin, and how the camera sees it.
+struct SphereWindow {
+    PictureWindow pixels;
+    View view;
+};
+
+/// Pixels are averaged in blocks where the sphere is more than `most_across_px` wide. Throws
+/// FileError that names `manifest` for a sphere that the camera does not see, or of less than 40
+/// pixels.
+SphereWindow window_around(const View& camera,
+                           const Sphere& sphere,
+                           double most_across_px,
+                           const std::filesystem::path& manifest);
 
 }  // namespace livery

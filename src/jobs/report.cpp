@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include "core/paths.h"
-#include "core/text/html.h"
+#include "core/text/markup.h"
 
 namespace livery {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "core/pictures/colour_differences.h"
+#include "core/pictures/picture_means.h"
 #include "core/statistics.h"
 
 namespace livery {

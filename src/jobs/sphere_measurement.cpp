@@ -16,7 +16,6 @@
 #include "core/worst_error.h"
 #include "jobs/camera_to_xyz_file.h"
 #include "jobs/merged_captures.h"
-#include "jobs/sphere_window.h"
 
 namespace livery {
 

@@ -13,7 +13,7 @@
 #include "core/hash.h"
 #include "core/image_io.h"
 #include "core/paths.h"
-#include "core/usual.h"
+#include "core/statistics.h"
 
 namespace livery {
 

@@ -15,7 +15,7 @@
 
 #include "appearance/material_library.h"
 #include "core/error.h"
-#include "core/shuffle.h"
+#include "core/random.h"
 #include "jobs/calibrate/bench_calibration.h"
 #include "jobs/calibrate/calibration_folder.h"
 #include "jobs/synthetic_calibration.h"

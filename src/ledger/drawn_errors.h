@@ -5,12 +5,26 @@
 #include <string>
 #include <vector>
 
+#include <glm/vec3.hpp>
+
 #include "core/progress.h"
 #include "core/random.h"
 #include "ledger/level.h"
+#include "radiance/lanes/lane_shading.h"
 #include "radiance/lanes/shading_in_double.h"
 
 namespace livery {
+
+/// By the lanes of the processor, as a frame runs them.
+std::vector<glm::vec3> shaded_in_lanes(const Material& material,
+                                       const LooseFragments& fragments,
+                                       double exposure_ev,
+                                       const LaneFunctions& functions = best_lanes());
+
+/// By the shader, in the current OpenGL context, into 32-bit floats.
+std::vector<glm::vec3> shaded_in_gl(const Material& material,
+                                    const LooseFragments& fragments,
+                                    double exposure_ev);
 
 /// What a fragment is lit by and covers, one kind of it at a time.
 enum class DrawnLight {

@@ -16,7 +16,7 @@
 #include "core/parallel.h"
 #include "core/random.h"
 #include "jobs/calibrate/bench_calibration.h"
-#include "jobs/eye_comparison.h"
+#include "jobs/comparison.h"
 #include "radiance/renderer.h"
 #include "scene/library.h"
 #include "scene/mockup_mask.h"

@@ -1,4 +1,4 @@
-// What a paint's reflectance is, number by number: for `livery brdf` and `livery albedo`.
+// What a paint's reflectance is, number by number, on the processor and by its shader.
 #pragma once
 
 #include <span>
@@ -6,8 +6,10 @@
 
 #include <glm/vec3.hpp>
 
+#include "appearance/bsdf.h"
 #include "appearance/directions.h"
 #include "appearance/material.h"
+#include "appearance/measured/measured_grid.h"
 #include "appearance/measured/measured_reflectance.h"
 #include "core/progress.h"
 #include "gl/context.h"
@@ -50,5 +52,17 @@ std::vector<glm::dvec3> albedo_values(const MeasuredReflectance& measured,
                                       std::span<const glm::dvec3> wo,
                                       const ReflectanceSettings& settings,
                                       const Progress& progress = {});
+
+/// In the working space, one value a pair. Makes a context of its own and leaves none current.
+std::vector<glm::dvec3> reflectance_on_gpu(ReflectanceModel model,
+                                           const BsdfParameters& parameters,
+                                           std::span<const DirectionPair> pairs,
+                                           GlDevice device,
+                                           const Progress& progress = {});
+/// The same of measured reflectance, drawn from its grid.
+std::vector<glm::dvec3> reflectance_on_gpu(const MeasuredGrid& grid,
+                                           std::span<const DirectionPair> pairs,
+                                           GlDevice device,
+                                           const Progress& progress = {});
 
 }  // namespace livery

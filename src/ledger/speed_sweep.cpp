@@ -9,8 +9,8 @@
 #include <fmt/format.h>
 
 #include "compensation/compensation.h"
-#include "core/elapsed.h"
 #include "core/parallel.h"
+#include "core/time.h"
 #include "jobs/synthetic_calibration.h"
 #include "radiance/renderer.h"
 

@@ -9,7 +9,7 @@
 
 #include "appearance/model_table.h"
 #include "core/worst_error.h"
-#include "ledger/reflectance_on_gpu.h"
+#include "ledger/reflectance_values.h"
 
 namespace livery {
 

@@ -8,7 +8,7 @@
 
 #include "core/colour.h"
 #include "core/statistics.h"
-#include "twin/factors.h"
+#include "twin/received.h"
 
 namespace livery {
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "core/error.h"
-#include "core/freed_memory.h"
+#include "core/memory.h"
 #include "core/worker.h"
 #include "live/bench_picture.h"
 #include "live/calibration_reuse.h"
@@ -14,7 +14,7 @@
 #include "live/orbit.h"
 #include "live/projector_setup.h"
 #include "twin/bench.h"
-#include "twin/pixel_rays.h"
+#include "twin/place.h"
 
 namespace livery {
 

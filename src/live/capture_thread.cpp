@@ -6,10 +6,10 @@
 
 #include "capture/patient_camera.h"
 #include "core/error.h"
-#include "core/freed_memory.h"
 #include "core/hash.h"
+#include "core/memory.h"
 #include "core/paths.h"
-#include "jobs/capture_run.h"
+#include "jobs/capture_bench.h"
 #include "live/capture_pictures.h"
 #include "live/capture_work.h"
 #include "live/low_priority.h"

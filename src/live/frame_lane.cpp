@@ -15,8 +15,8 @@
 #include "appearance/measured/measured_paint.h"
 #include "appearance/model_table.h"
 #include "appearance/subsurface/translucent_paint.h"
-#include "core/elapsed.h"
 #include "core/error.h"
+#include "core/time.h"
 #include "jobs/picture.h"
 
 namespace livery {

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "live/ground_shadow.h"
+#include "live/preview_picture.h"
 #include "live/swatches.h"
 #include "radiance/light/vertex_light.h"
 

@@ -1,6 +1,6 @@
 #include "live/low_priority.h"
 
-#include "core/thread_priority.h"
+#include "core/parallel.h"
 
 namespace livery {
 

@@ -1,16 +1,27 @@
-// A preview's radiance as an sRGB texture, with the ground's shadow and the outline of a part.
+// A preview's radiance as an sRGB texture, with the shadow of the product on its ground.
 #pragma once
 
 #include <map>
 #include <optional>
 #include <utility>
 
+#include "core/image.h"
 #include "gl/draw.h"
 #include "gl/program.h"
-#include "live/ground_shadow.h"
 #include "radiance/raster_preview.h"
+#include "scene/product.h"
+#include "tracing/tracer.h"
 
 namespace livery {
+
+/// On the plane under the lowest point of the product; independent of lights and views.
+struct GroundShadow {
+    double height_mm = 0.0;
+    glm::dvec2 corner_mm{0.0};  ///< x and z of the picture's first corner
+    glm::dvec2 size_mm{1.0};
+    Image8 hidden;  ///< one channel, 255: no sky at all; columns along x, rows along z
+};
+GroundShadow ground_shadow(const Product& product, const Tracer& tracer);
 
 /// Needs a current OpenGL context, the same for its whole life.
 class PreviewEncoder {

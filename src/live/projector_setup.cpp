@@ -1,26 +1,219 @@
 #include "live/projector_setup.h"
 
 #include <algorithm>
+#include <cstring>
 #include <ctime>
+#include <filesystem>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+#include <vector>
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include "core/cache.h"
 #include "core/error.h"
+#include "core/hash.h"
 #include "core/log.h"
 #include "core/paths.h"
 #include "core/replace_folder.h"
 #include "jobs/calibrate/calibration_folder.h"
-#include "jobs/calibrate/calibration_origin.h"
-#include "jobs/calibrate/nudged_calibration.h"
-#include "live/setup_cache.h"
+#include "jobs/calibrate/reposed_calibration.h"
 #include "scene/mockup_mask.h"
 #include "twin/description.h"
 
 namespace livery {
 
 namespace {
+
+/// Rises when what is kept, or how it is worked out from a calibration, changes.
+constexpr int kSetupVersion = 3;
+
+/// Values one after the other into bytes.
+class Writer {
+  public:
+    template <typename T>
+    void operator()(const T& value) {
+        static_assert(std::is_trivially_copyable_v<T>);
+        bytes_.append(reinterpret_cast<const char*>(&value), sizeof value);
+    }
+    template <typename T>
+    void operator()(const std::vector<T>& values) {
+        (*this)(static_cast<std::uint64_t>(values.size()));
+        bytes_.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T));
+    }
+    void operator()(const std::vector<std::string>& texts) {
+        (*this)(static_cast<std::uint64_t>(texts.size()));
+        for (const std::string& text : texts) (*this)(text);
+    }
+    void operator()(const std::string& text) {
+        (*this)(std::vector<char>(text.begin(), text.end()));
+    }
+
+    std::string take() { return std::move(bytes_); }
+
+  private:
+    std::string bytes_;
+};
+
+/// And back. Throws std::runtime_error where they end too early.
+class Reader {
+  public:
+    explicit Reader(std::string_view bytes) : bytes_(bytes) {}
+
+    template <typename T>
+    void operator()(T& value) {
+        static_assert(std::is_trivially_copyable_v<T>);
+        copy(&value, sizeof value);
+    }
+    template <typename T>
+    void operator()(std::vector<T>& values) {
+        values.resize(count(sizeof(T)));
+        copy(values.data(), values.size() * sizeof(T));
+    }
+    void operator()(std::vector<std::string>& texts) {
+        texts.resize(count(sizeof(std::uint64_t)));
+        for (std::string& text : texts) (*this)(text);
+    }
+    void operator()(std::string& text) {
+        std::vector<char> letters;
+        (*this)(letters);
+        text.assign(letters.begin(), letters.end());
+    }
+    bool at_end() const { return bytes_.empty(); }
+
+  private:
+    void copy(void* to, std::size_t size) {
+        if (size > bytes_.size()) throw std::runtime_error("it ends too early");
+        if (size > 0) std::memcpy(to, bytes_.data(), size);
+        bytes_.remove_prefix(size);
+    }
+    std::size_t count(std::size_t least_bytes_each) {
+        std::uint64_t number = 0;
+        (*this)(number);
+        if (number > bytes_.size() / least_bytes_each)
+            throw std::runtime_error("it ends too early");
+        return static_cast<std::size_t>(number);
+    }
+    std::string_view bytes_;
+};
+
+/// The same order for both ways. What load_setup() drops is not kept.
+template <typename Archive, typename Calibration>
+void visit_calibration(Archive& archive, Calibration& c) {
+    archive(c.width);
+    archive(c.height);
+    archive(c.id);
+    archive(c.created);
+    archive(c.mode);
+    archive(c.made_with);
+    archive(c.dark_drive);
+    archive(c.bright_drive);
+    archive(c.status.width);
+    archive(c.status.height);
+    archive(c.status.channels);
+    archive(c.status.values);
+    for (auto& curve : c.response) {
+        archive(curve.drive_from_n);
+        archive(curve.largest_violation);
+    }
+    archive(c.table.grid);
+    archive(c.table.n_from_drive);
+    archive(c.xyz_from_camera);
+    archive(c.xyz_origin);
+    archive(c.camera_ambient);
+    archive(c.additivity_error);
+    archive(c.condition_p99);
+    archive(c.valid_fraction);
+    archive(c.ambient_fraction);
+    archive(c.mixing_spread);
+    archive(c.predicted_fraction);
+    archive(c.prediction_error_median);
+    archive(c.prediction_error_p95);
+    archive(c.warnings);
+}
+
+template <typename Archive, typename Table>
+void visit_table(Archive& archive, Table& t) {
+    archive(t.width);
+    archive(t.height);
+    archive(t.design_white_y);
+    archive(t.pixels);
+    archive(t.coefficients);
+    for (auto& curve : t.drive_from_n) archive(curve);
+    archive(t.non_additive.grid);
+    archive(t.non_additive.n_from_nodes);
+    for (auto& curve : t.non_additive.rho) archive(curve);
+    for (auto& curve : t.non_additive.linear_of_node) archive(curve);
+    archive(t.non_additive.start_grid);
+    archive(t.non_additive.start);
+    archive(t.gamut.coefficients);
+    archive(t.gamut.darkest);
+    archive(t.gamut.brightest);
+    archive(t.gamut.own_darkest);
+    archive(t.gamut.own_brightest);
+    archive(t.gamut.floor_lightness);
+    archive(t.calibration_id);
+}
+
+template <typename Archive, typename Setup>
+void visit_setup(Archive& archive, Setup& setup) {
+    archive(setup.design_white_y);
+    visit_calibration(archive, *setup.calibration);
+    visit_table(archive, *setup.table);
+}
+
+/// Of all that load_setup() reads, of the percentile and of the pixels that count. Throws FileError
+/// for a folder or a file in it that cannot be read.
+std::string setup_cache_name(const std::filesystem::path& calibration,
+                             double design_white_percentile,
+                             GamutMapping gamut,
+                             const Image8& mockup) {
+    std::vector<std::filesystem::path> files;
+    std::error_code error;
+    for (std::filesystem::directory_iterator entry(calibration, error), end; !error && entry != end;
+         entry.increment(error)) {
+        if (entry->is_regular_file()) files.push_back(entry->path());
+    }
+    if (error) throw FileError(calibration, "", error.message(), "a folder that can be read");
+    std::sort(files.begin(), files.end());
+    Hasher hasher;
+    hasher.add(fmt::format("{} {} {}", kSetupVersion, design_white_percentile, to_string(gamut)));
+    hasher.add_bytes(mockup.values.data(), mockup.values.size());
+    for (const auto& file : files) {
+        hasher.add(file.filename().string());
+        hasher.add(read_text_file(file, std::size_t{4} << 30u));
+    }
+    return "setup-" + hasher.hex();
+}
+
+/// All but the view. Nothing when it is not kept (core/cache.h).
+std::shared_ptr<ProjectorSetup> read_kept_setup(const std::string& name) {
+    const auto bytes = read_cache(name);
+    if (!bytes) return nullptr;
+    auto setup = std::make_shared<ProjectorSetup>();
+    setup->calibration.emplace();
+    setup->table.emplace();
+    try {
+        Reader reader(*bytes);
+        visit_setup(reader, *setup);
+        if (!reader.at_end()) throw std::runtime_error("it goes on past its end");
+    } catch (const std::exception& error) {
+        log_line(LogLevel::warning,
+                 "cache: " + name + ": " + error.what() + "; what it held is worked out again");
+        return nullptr;
+    }
+    return setup;
+}
+
+void keep_setup(const std::string& name, const ProjectorSetup& setup) {
+    Writer writer;
+    visit_setup(writer, setup);
+    write_cache(name, writer.take());
+}
 
 std::filesystem::path calibrations_folder() { return user_folder() / "calibrations"; }
 

@@ -10,7 +10,7 @@
 #include "compensation/compensation.h"
 #include "core/progress.h"
 #include "jobs/calibrate/bench_calibration.h"
-#include "jobs/calibrate/calibration_origin.h"
+#include "jobs/calibrate/calibration_folder.h"
 #include "jobs/calibrate/reposed_calibration.h"
 #include "scene/colour_calibration.h"
 #include "scene/product.h"

@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "appearance/parameter_table.h"
-#include "core/freed_memory.h"
-#include "core/pictures/colour_differences.h"
+#include "core/memory.h"
+#include "core/pictures/picture_means.h"
 #include "core/worker.h"
 #include "live/low_priority.h"
 #include "scene/artwork_coats.h"

@@ -49,4 +49,12 @@ std::optional<Image8> kept_swatch(const Material& material, int size_px);
 /// False where the user's folder cannot be written: then it is drawn again the next time.
 bool keep_swatch(const Material& material, const Image8& swatch);
 
+inline constexpr double kThinnestWedge_mm = 0.5, kThickestWedge_mm = 30.0;  ///< of the product
+
+/// sRGB with coverage in a straight alpha, square. From left to right the thickness grows in equal
+/// ratios; light of 1 comes from behind and of a third from the front, both even, and what a slab
+/// as thick lets through and returns is exact (exact_totals.h). On the processor, some 0.1 s.
+/// Throws std::invalid_argument for another paint.
+Image8 translucent_swatch(const Material& translucent, int size_px);
+
 }  // namespace livery

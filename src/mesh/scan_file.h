@@ -15,7 +15,6 @@
 
 #include "mesh/length_unit.h"
 #include "mesh/mesh.h"
-#include "mesh/triangulate.h"
 
 namespace livery {
 
@@ -52,5 +51,16 @@ Mesh mesh_of(ScanFile& scan, const std::filesystem::path& file, std::optional<Le
 /// kMaxCuttingSteps it stops: false.
 bool add_polygon(ScanFile& scan, const std::vector<ScanCorner>& polygon, std::uint16_t part);
 [[noreturn]] void refuse_polygons(const std::filesystem::path& file);
+
+/// Corners above which a polygon is refused by whoever reads it.
+inline constexpr std::size_t kMaxPolygonCorners = 4096;
+/// Steps, seconds of them, above which a whole file is: cutting ears looks at every corner that
+/// turns inward for each that is cut.
+inline constexpr std::size_t kMaxCuttingSteps = 2'000'000'000;
+
+/// Cuts a simple polygon, flat or nearly so, concave or convex, into corner count - 2 triangles of
+/// indices into it, wound as it is. One that crosses itself gives as many, some of them
+/// overlapping. `steps` grows by what it took.
+std::vector<glm::uvec3> triangulate(const std::vector<glm::dvec3>& polygon, std::size_t& steps);
 
 }  // namespace livery

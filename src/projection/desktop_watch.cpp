@@ -12,7 +12,7 @@
 
 #include "core/log.h"
 #include "projection/doorbell.h"
-#include "projection/mutter_match.h"
+#include "projection/mutter.h"
 #include "projection/outputs.h"
 #include "projection/session_bus.h"
 

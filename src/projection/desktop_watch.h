@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "projection/mutter_state.h"
+#include "projection/mutter.h"
 
 namespace livery {
 

@@ -8,8 +8,7 @@
 #include <utility>
 
 #include "core/log.h"
-#include "gl/picture_fade.h"
-#include "gl/window_blit.h"
+#include "gl/window_picture.h"
 #include "projection/window_keeper.h"
 
 #define GLFW_INCLUDE_NONE

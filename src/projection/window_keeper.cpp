@@ -2,8 +2,11 @@
 
 #include <array>
 #include <condition_variable>
+#include <exception>
+#include <memory>
 #include <mutex>
 #include <stdexcept>
+#include <string>
 #include <thread>
 #include <utility>
 
@@ -13,15 +16,66 @@
 #include <xcb/xtest.h>
 
 #include "core/log.h"
-#include "projection/awake.h"
 #include "projection/desktop_watch.h"
 #include "projection/doorbell.h"
 #include "projection/outputs.h"
+#include "projection/session_bus.h"
 #include "projection/stacking.h"
 #include "projection/x_connection.h"
 
 namespace livery {
+
 namespace {
+
+/// Keeps the desktop's screensaver away while it lives, where a desktop offers that. Asks on a
+/// thread of its own; construction returns at once.
+class Awake {
+  public:
+    Awake();
+    ~Awake();
+    Awake(const Awake&) = delete;
+    Awake& operator=(const Awake&) = delete;
+
+  private:
+    struct Implementation;
+    std::unique_ptr<Implementation> implementation_;
+};
+
+struct Awake::Implementation {
+    std::mutex mutex;
+    std::condition_variable changed;
+    bool over = false;
+    std::thread thread{[this] { run(); }};
+
+    ~Implementation() {
+        {
+            const std::lock_guard lock(mutex);
+            over = true;
+        }
+        changed.notify_one();
+        thread.join();
+    }
+
+    void run() {
+        try {
+            const auto bus = SessionBus::connect();
+            // Without a bus or an answer only the X server blanks screens, and it is told apart.
+            const auto inhibition =
+                bus ? bus->inhibit_screensaver("a projector is showing a mock-up") : std::nullopt;
+            if (!inhibition) return;
+            std::unique_lock lock(mutex);
+            changed.wait(lock, [&] { return over; });
+            lock.unlock();
+            bus->allow_screensaver(*inhibition);
+        } catch (const std::exception& error) {
+            log_line(LogLevel::warning, std::string("keeping the screens on: ") + error.what());
+        }
+    }
+};
+
+Awake::Awake() : implementation_(std::make_unique<Implementation>()) {}
+
+Awake::~Awake() = default;
 
 /// How often a shown window comes to the top again; enough for whatever a person opens.
 constexpr int kRaises = 50;

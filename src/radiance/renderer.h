@@ -7,7 +7,7 @@
 
 #include "core/image.h"
 #include "core/progress.h"
-#include "gl/counters.h"
+#include "gl/timer.h"
 #include "radiance/frame_geometry.h"
 #include "radiance/lanes/input_layers.h"
 #include "radiance/light/mirror_lobes.h"

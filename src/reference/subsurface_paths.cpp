@@ -5,7 +5,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "appearance/gloss_optics.h"
+#include "appearance/paint_figures.h"
 #include "appearance/subsurface/translucent_paint.h"
 #include "core/colour.h"
 #include "reference/part_boundary.h"

@@ -9,8 +9,8 @@
 #include <glm/exponential.hpp>
 #include <glm/geometric.hpp>
 
-#include "appearance/gloss_optics.h"
-#include "appearance/subsurface/fresnel_moments.h"
+#include "appearance/paint_figures.h"
+#include "appearance/subsurface/scattering_medium.h"
 
 namespace livery {
 

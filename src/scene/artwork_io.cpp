@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "core/json_ranges.h"
+#include "core/json.h"
 #include "scene/look_json.h"
 
 namespace livery {

@@ -3,7 +3,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "core/json_ranges.h"
+#include "core/json.h"
 #include "core/paths.h"
 #include "scene/look.h"
 #include "scene/look_json.h"

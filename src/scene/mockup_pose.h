@@ -1,4 +1,5 @@
-// Where the mock-up was found, with what that is worth, and its file.
+// Where the mock-up was found, with what that is worth, its file, and the mock-up moved a little as
+// it looks from the projector.
 #pragma once
 
 #include <array>
@@ -6,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "mesh/mesh.h"
 #include "scene/view.h"
 
 namespace livery {
@@ -27,5 +29,29 @@ MockupPose read_pose_file(const std::filesystem::path& file);
 /// The same of its text.
 MockupPose parse_mockup_pose(const std::string& text, const std::filesystem::path& file);
 void write_pose_file(const std::filesystem::path& file, const MockupPose& pose);
+
+/// In pixels of the projector's picture, so that a step is one that can be seen: how far the
+/// mock-up's middle moves, or its rim where it turns or comes nearer.
+struct Nudge {
+    double right_px = 0.0, down_px = 0.0, nearer_px = 0.0;
+    double yaw_px = 0.0;    ///< what faces the projector goes to the right
+    double pitch_px = 0.0;  ///< what faces the projector goes down
+    double roll_px = 0.0;   ///< clockwise
+};
+
+/// The projector's view after the mock-up, which is within `mockup`, was moved by that; the turns
+/// are about its middle, one after the other: yaw, pitch, roll. Throws std::invalid_argument when
+/// the projector does not see the middle, before or after.
+View nudged(const View& projector, const Bounds& mockup, const Nudge& by);
+
+/// How the mock-up was moved between two views of one projector, along and about its axes.
+struct MockupMotion {
+    glm::dvec3 moved_mm{0.0};  ///< its middle: right, down, away
+    double turned_deg = 0.0;
+    glm::dvec2 moved_px{0.0};  ///< its middle's picture: right, down
+};
+MockupMotion motion_between(const View& before, const View& after, const Bounds& mockup);
+/// "3.0 px to the right (1.2 mm), 0.8 mm nearer, turned by 0.31 degrees"; "not moved".
+std::string in_words(const MockupMotion& motion);
 
 }  // namespace livery

@@ -1,7 +1,8 @@
-// Rotations and poses in JSON files. Internal to scene/.
+// Rotations, poses and data sheets in JSON files. Internal to scene/ and twin/.
 #pragma once
 
 #include "core/json.h"
+#include "scene/data_sheet.h"
 #include "scene/view.h"
 
 namespace livery {
@@ -20,5 +21,9 @@ void read_lens(const JsonReader& object, View& view);
 /// A camera file's fields (docs/files.md) within an object.
 View read_camera_fields(const JsonReader& object);
 Json json_of(const View& view);
+
+/// Throws FileError where a field is missing or beyond what is built.
+DataSheets read_data_sheets(const JsonReader& json);
+Json json_of(const DataSheets& sheets);
 
 }  // namespace livery

@@ -1,6 +1,7 @@
 // A product: its mesh with parts, its scale and where it stands.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -8,10 +9,22 @@
 #include <vector>
 
 #include "mesh/mesh.h"
-#include "scene/part_exchange.h"
 #include "scene/view.h"
 
 namespace livery {
+
+/// Shares of a hemisphere, weighted by the cosine (form factors), with nothing in between: at least
+/// what is seen; of a two-sided place the side that sees more. A closed convex mesh has none.
+struct PartExchange {
+    std::size_t parts = 0;
+    std::vector<float> share;  ///< parts x parts
+
+    /// Of the places on part `to`, 95% see no more of part `from` than this.
+    float of(std::size_t to, std::size_t from) const { return share[to * parts + from]; }
+};
+
+/// From points spread over the surface by area; the same mesh gives the same answer.
+PartExchange part_exchange(const Mesh& mesh);
 
 struct Product {
     std::string name;

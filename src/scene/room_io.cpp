@@ -1,6 +1,6 @@
 #include <limits>
 
-#include "core/json_ranges.h"
+#include "core/json.h"
 #include "core/paths.h"
 #include "scene/pose_io.h"
 #include "scene/room.h"

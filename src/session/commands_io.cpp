@@ -6,11 +6,10 @@
 
 #include "appearance/material_json.h"
 #include "core/error.h"
-#include "core/json_ranges.h"
+#include "core/json.h"
 #include "scene/look_json.h"
-#include "session/choices_json.h"
 #include "session/commands.h"
-#include "session/seats_json.h"
+#include "session/fields_json.h"
 
 namespace livery {
 

@@ -5,13 +5,12 @@
 
 #include "appearance/material_json.h"
 #include "core/error.h"
-#include "core/json_ranges.h"
+#include "core/json.h"
 #include "scene/look_json.h"
-#include "session/choices_json.h"
 #include "session/document.h"
+#include "session/fields_json.h"
 #include "session/naming.h"
 #include "session/paint_edit.h"
-#include "session/seats_json.h"
 
 namespace livery {
 

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "appearance/fit/colour_record.h"
+#include "appearance/fit/recolour.h"
 #include "appearance/material_library.h"
 #include "appearance/measured/measured_paint.h"
 #include "appearance/parameter_table.h"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/grade.h"
-#include "studio/kit/held.h"
+#include "studio/kit/widgets.h"
 
 struct ImVec4;
 

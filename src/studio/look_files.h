@@ -1,4 +1,4 @@
-// Looks and sessions from and to files, asked for in the window.
+// Looks, sessions and pictures from and to files, asked for in the window.
 #pragma once
 
 #include <string>
@@ -7,12 +7,16 @@ namespace livery {
 
 struct Shell;
 
-void ask_for_look(Shell& shell);
+void ask_for_look_file(Shell& shell);
 void ask_where_to_export_look(Shell& shell);
 void ask_where_to_export_product(Shell& shell);
 void ask_where_to_save_session(Shell& shell);
 
 /// "Blue metallic / 2" -> "Blue-metallic-2": for file names.
 std::string file_name_of(const std::string& name);
+
+struct Shell;
+
+void ask_where_to_save_picture(Shell& shell);
 
 }  // namespace livery

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "gl/handles.h"
-#include "studio/paint/swatch_textures.h"
+#include "studio/paint/swatches.h"
 #include "studio/studio.h"
 
 struct ImVec2;

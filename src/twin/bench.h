@@ -2,7 +2,9 @@
 // calibration/ and compensation/ meet it only through the three ports.
 #pragma once
 
+#include <cstdint>
 #include <memory>
+#include <vector>
 
 #include "core/bench_ports.h"
 #include "core/image.h"
@@ -14,6 +16,22 @@
 #include "twin/observer.h"
 
 namespace livery {
+
+bool has_room_light(const std::vector<MishapDescription>& mishaps);
+
+/// The light on the camera's pixels at this photograph. `room_light`: a room light of 1 on them;
+/// empty where there is none.
+ImageF with_mishaps(ImageF units_per_s,
+                    const ImageF& room_light,
+                    const std::vector<MishapDescription>& mishaps,
+                    std::uint32_t photograph);
+
+/// How long the camera exposes when it says `exposure_s`.
+double true_exposure_s(double exposure_s,
+                       const CameraDescription& camera,
+                       const ImageF& units_per_s,
+                       const std::vector<MishapDescription>& mishaps,
+                       std::uint32_t photograph);
 
 /// The observer's picture: each pixel what the eye sees in one direction, whichever projector
 /// pixels light it. What the audience sees is judged here: light that falls on another place of

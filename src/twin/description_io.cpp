@@ -6,9 +6,8 @@
 #include <glm/matrix.hpp>
 
 #include "core/error.h"
-#include "core/json_ranges.h"
+#include "core/json.h"
 #include "core/paths.h"
-#include "scene/data_sheet_io.h"
 #include "scene/pose_io.h"
 #include "twin/description.h"
 

@@ -11,7 +11,7 @@
 #include "core/parallel.h"
 #include "mesh/mesh.h"
 #include "tracing/tracer.h"
-#include "twin/pixel_rays.h"
+#include "twin/place.h"
 #include "twin/sensor.h"
 
 namespace livery {

@@ -9,7 +9,7 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
-#include "twin/pixel_rays.h"
+#include "twin/place.h"
 
 namespace livery {
 

@@ -11,7 +11,6 @@
 #include "core/mutation.h"
 #include "core/parallel.h"
 #include "core/random.h"
-#include "twin/pixel_rays.h"
 #include "twin/place.h"
 #include "twin/spectral_paint.h"
 

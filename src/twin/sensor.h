@@ -1,7 +1,11 @@
-// From the light on the camera's pixels to the numbers in its file.
+// From the light on the camera's pixels to the numbers in its file, and a photograph of a colour
+// chart by it.
 #pragma once
 
 #include <cstdint>
+#include <vector>
+
+#include <glm/vec3.hpp>
 
 #include "core/image.h"
 #include "twin/description.h"
@@ -30,5 +34,15 @@ ImageF develop(const CameraDescription& camera,
 double saturates_at(const CameraDescription& camera);
 /// The file's value for no light.
 double black_level(const CameraDescription& camera);
+
+/// The 24 patches of a ColorChecker under D65: linear camera RGB (any scale) and XYZ with Y = 1
+/// for a perfect white.
+struct ChartPhotograph {
+    std::vector<glm::dvec3> camera_rgb;
+    std::vector<glm::dvec3> xyz;
+};
+
+/// Spectral integration of the shipped patch reflectances with the camera's sensitivities.
+ChartPhotograph photograph_chart_under_daylight(const CameraDescription& camera);
 
 }  // namespace livery

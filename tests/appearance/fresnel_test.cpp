@@ -7,8 +7,8 @@
 #include <gtest/gtest.h>
 
 #include "appearance/bsdf.h"
-#include "appearance/gloss_optics.h"
 #include "appearance/models.h"
+#include "appearance/paint_figures.h"
 #include "core/worst_error.h"
 
 namespace livery {

@@ -9,12 +9,10 @@
 #include <gtest/gtest.h>
 
 #include "appearance/bsdf.h"
-#include "appearance/gloss_optics.h"
 #include "appearance/material_library.h"
 #include "appearance/measured/measured_paint.h"
 #include "appearance/model_table.h"
 #include "core/spectrum.h"
-#include "core/ten_degree.h"
 #include "support/reference_data.h"
 #include "support/temporary_folder.h"
 

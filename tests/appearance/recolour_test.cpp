@@ -7,7 +7,6 @@
 
 #include <gtest/gtest.h>
 
-#include "appearance/fit/colour_record.h"
 #include "appearance/material_library.h"
 #include "appearance/model_table.h"
 #include "appearance/paint_bsdf.h"

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "appearance/bsdf_source.h"
-#include "appearance/gloss_optics.h"
+#include "appearance/paint_figures.h"
 #include "core/random.h"
 #include "core/worst_error.h"
 

@@ -8,7 +8,7 @@
 
 #include "capture/environment_folder.h"
 #include "core/image_io.h"
-#include "core/pictures/read_exposure.h"
+#include "core/pictures/exposure_settings.h"
 #include "support/dng.h"
 #include "support/exif.h"
 #include "support/file_error.h"

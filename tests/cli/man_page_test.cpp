@@ -1,10 +1,9 @@
-#include "cli/man_page.h"
-
 #include <sstream>
 #include <string>
 
 #include <gtest/gtest.h>
 
+#include "cli/parse.h"
 #include "core/system/version.h"
 
 namespace livery {

@@ -21,7 +21,7 @@
 #include "core/paths.h"
 #include "core/statistics.h"
 #include "jobs/calibrate/calibration_folder.h"
-#include "jobs/eye_comparison.h"
+#include "jobs/comparison.h"
 #include "mesh/ply_write.h"
 #include "scene/library.h"
 #include "scene/product.h"

@@ -1,10 +1,10 @@
-#include "core/freed_memory.h"
-
 #include <cstdlib>
 #include <memory>
 
 #include <gtest/gtest.h>
 #include <malloc.h>
+
+#include "core/memory.h"
 
 namespace livery {
 namespace {

@@ -14,7 +14,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "core/utc.h"
+#include "core/time.h"
 #include "support/temporary_folder.h"
 #include "support/without_rights.h"
 

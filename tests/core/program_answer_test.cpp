@@ -1,7 +1,7 @@
 // Programs that answer, fail, crash, hang and never stop talking.
-#include "core/system/program_answer.h"
-
 #include <gtest/gtest.h>
+
+#include "core/system/programs.h"
 
 namespace livery {
 namespace {

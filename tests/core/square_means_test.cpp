@@ -1,9 +1,9 @@
-#include "core/pictures/square_means.h"
-
 #include <cmath>
 #include <limits>
 
 #include <gtest/gtest.h>
+
+#include "core/pictures/picture_means.h"
 
 namespace livery {
 namespace {

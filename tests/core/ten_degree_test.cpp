@@ -1,6 +1,4 @@
 // The colours of the 10 degree observer, from spectra and from what the 2 degree observer sees.
-#include "core/ten_degree.h"
-
 #include <algorithm>
 #include <cstdio>
 #include <numeric>
@@ -9,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "core/colour.h"
+#include "core/spectrum.h"
 #include "core/working_space_study.h"
 #include "support/reference_data.h"
 

@@ -16,7 +16,7 @@
 #include "desktop/two_monitors.h"
 #include "jobs/calibrate/bench_calibration.h"
 #include "jobs/calibrate/calibration_folder.h"
-#include "jobs/eye_comparison.h"
+#include "jobs/comparison.h"
 #include "live/projector_setup.h"
 #include "mesh/ply_write.h"
 #include "scene/mockup_mask.h"

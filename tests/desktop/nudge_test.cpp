@@ -1,7 +1,5 @@
 // The mock-up moved by hand: with the keys, on the projector, until its lines lie on it.
 
-#include "scene/nudge.h"
-
 #include <filesystem>
 
 #include <glm/geometric.hpp>
@@ -11,7 +9,8 @@
 #include "desktop/two_monitors.h"
 #include "jobs/calibrate/calibration_folder.h"
 #include "scene/library.h"
-#include "scene/wireframe.h"
+#include "scene/mockup_mask.h"
+#include "scene/mockup_pose.h"
 #include "session/session.h"
 
 namespace livery {

@@ -1,5 +1,5 @@
 #include "fuzz/fuzz.h"
-#include "jobs/calibrate/calibration_origin.h"
+#include "jobs/calibrate/calibration_folder.h"
 
 LIVERY_FUZZ(text) {
     const livery::CalibrationOrigin origin = livery::parse_origin(text, "origin.json");

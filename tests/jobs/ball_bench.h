@@ -13,7 +13,7 @@
 #include "core/image_io.h"
 #include "core/json.h"
 #include "jobs/environment/environment_measurement.h"
-#include "jobs/environment/simulated_ball.h"
+#include "jobs/simulated_captures.h"
 #include "scene/look.h"
 #include "support/temporary_folder.h"
 

@@ -1,12 +1,11 @@
 // What the audience sees is judged where the light falls: a wrong pose must cost, and a right one
 // must not, whatever each projector pixel shows by itself.
-#include "jobs/eye_comparison.h"
-
 #include <cmath>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "jobs/comparison.h"
 #include "session/small_session.h"
 #include "support/kept_light.h"
 #include "tracing/tracer.h"

@@ -1,5 +1,3 @@
-#include "jobs/calibrate/nudged_calibration.h"
-
 #include <filesystem>
 #include <stdexcept>
 
@@ -7,9 +5,9 @@
 #include <gtest/gtest.h>
 
 #include "jobs/calibrate/calibration_folder.h"
-#include "jobs/calibrate/calibration_origin.h"
+#include "jobs/calibrate/reposed_calibration.h"
 #include "jobs/synthetic_calibration.h"
-#include "scene/nudge.h"
+#include "scene/mockup_pose.h"
 #include "support/file_error.h"
 #include "support/temporary_folder.h"
 

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "jobs/calibrate/calibration_origin.h"
+#include "jobs/calibrate/calibration_folder.h"
 #include "jobs/file_check.h"
 #include "support/old_files.h"
 #include "support/temporary_folder.h"

@@ -7,7 +7,6 @@
 #include "core/colour.h"
 #include "core/image_io.h"
 #include "jobs/render/render.h"
-#include "jobs/render/target_picture.h"
 #include "support/temporary_folder.h"
 
 namespace livery {

@@ -1,6 +1,4 @@
 // Pictures that the path tracer lights a product with: what files hold, and what is seen of them.
-#include "jobs/render/projected_picture.h"
-
 #include <limits>
 
 #include <gtest/gtest.h>

@@ -1,9 +1,9 @@
-#include "jobs/projector_irradiance.h"
-
 #include <cmath>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
+
+#include "jobs/captured_calibration.h"
 
 namespace livery {
 namespace {

@@ -11,7 +11,7 @@
 
 #include "calibration/registration/rotation.h"
 #include "jobs/calibrate/calibration_folder.h"
-#include "jobs/eye_comparison.h"
+#include "jobs/comparison.h"
 #include "jobs/half_size_bench.h"
 #include "scene/mockup_mask.h"
 #include "session/small_session.h"

@@ -3,7 +3,7 @@
 
 #include "core/error.h"
 #include "jobs/calibrate/bench_calibration.h"
-#include "jobs/eye_comparison.h"
+#include "jobs/comparison.h"
 #include "jobs/half_size_bench.h"
 #include "scene/library.h"
 #include "support/kept_light.h"

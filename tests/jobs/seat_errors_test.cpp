@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "core/pictures/colour_differences.h"
+#include "core/pictures/picture_means.h"
 #include "radiance/scenes.h"
 
 namespace livery {

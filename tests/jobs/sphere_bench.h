@@ -8,7 +8,7 @@
 #include "appearance/measured/measured_reflectance.h"
 #include "appearance/paint_bsdf.h"
 #include "core/json.h"
-#include "jobs/simulated_sphere.h"
+#include "jobs/simulated_captures.h"
 #include "jobs/sphere_measurement.h"
 #include "support/temporary_folder.h"
 

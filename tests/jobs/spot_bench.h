@@ -5,7 +5,7 @@
 #include <functional>
 
 #include "core/json.h"
-#include "jobs/spot/simulated_spot.h"
+#include "jobs/simulated_captures.h"
 #include "jobs/spot/spot_measurement.h"
 #include "support/temporary_folder.h"
 

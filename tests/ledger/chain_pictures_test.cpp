@@ -7,14 +7,13 @@
 #include <gtest/gtest.h>
 
 #include "compensation/compensate.h"
-#include "core/pictures/colour_differences.h"
+#include "core/pictures/picture_means.h"
 #include "core/statistics.h"
 #include "core/worst_error.h"
 #include "gl/context.h"
 #include "jobs/synthetic_calibration.h"
 #include "ledger/accuracy/chain_artwork.h"
-#include "ledger/accuracy/chain_bits.h"
-#include "ledger/accuracy/chain_halves.h"
+#include "ledger/accuracy/chain_precision.h"
 #include "radiance/renderer.h"
 #include "support/small_meshes.h"
 

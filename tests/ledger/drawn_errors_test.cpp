@@ -7,7 +7,6 @@
 
 #include "appearance/model_table.h"
 #include "gl/context.h"
-#include "ledger/drawn_values.h"
 #include "radiance/shading.h"
 #include "support/gl_device.h"
 

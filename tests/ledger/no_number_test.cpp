@@ -14,7 +14,6 @@
 #include "gl/context.h"
 #include "gl/read_back.h"
 #include "ledger/drawn_errors.h"
-#include "ledger/drawn_values.h"
 #include "radiance/shading.h"
 #include "support/gl_device.h"
 

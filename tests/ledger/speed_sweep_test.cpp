@@ -6,9 +6,8 @@
 
 #include "core/error.h"
 #include "core/paths.h"
-#include "core/text/marked_block.h"
-#include "ledger/speed_plot.h"
-#include "ledger/speed_table.h"
+#include "core/text/markup.h"
+#include "ledger/speed_report.h"
 #include "radiance/surface_map.h"
 #include "scene/library.h"
 #include "support/temporary_folder.h"

@@ -14,7 +14,7 @@
 #include "support/kept_light.h"
 #include "support/temporary_folder.h"
 #include "twin/bench.h"
-#include "twin/pixel_rays.h"
+#include "twin/place.h"
 
 namespace livery {
 namespace {

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "appearance/material_library.h"
-#include "core/shuffle.h"
+#include "core/random.h"
 #include "live/frame_lane.h"
 #include "live/frame_thread_fixture.h"
 #include "support/gl_device.h"

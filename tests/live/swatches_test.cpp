@@ -13,7 +13,6 @@
 #include "core/paths.h"
 #include "live/contexts.h"
 #include "live/preview_thread.h"
-#include "live/translucent_swatch.h"
 #include "support/gl_device.h"
 #include "support/temporary_folder.h"
 

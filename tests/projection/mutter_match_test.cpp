@@ -1,9 +1,8 @@
 // Which of Xwayland's outputs is which of Mutter's monitors.
-#include "projection/mutter_match.h"
-
 #include <gtest/gtest.h>
 
 #include "mutter_messages.h"
+#include "projection/mutter.h"
 
 namespace livery {
 namespace {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "projection/mutter_state.h"
+#include "projection/mutter.h"
 #include "projection/session_bus.h"
 
 namespace livery {

@@ -1,6 +1,4 @@
 // What Mutter answers, as values.
-#include "projection/mutter_state.h"
-
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -9,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "mutter_messages.h"
+#include "projection/mutter.h"
 #include "support/message_of.h"
 
 namespace livery {

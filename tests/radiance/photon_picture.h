@@ -10,8 +10,8 @@
 
 #include <glm/geometric.hpp>
 
-#include "appearance/gloss_optics.h"
-#include "appearance/subsurface/fresnel_moments.h"
+#include "appearance/paint_figures.h"
+#include "appearance/subsurface/scattering_medium.h"
 #include "appearance/subsurface/translucent_paint.h"
 #include "core/colour.h"
 #include "core/image.h"

@@ -9,6 +9,7 @@
 #include "core/colour.h"
 #include "core/image_io.h"
 #include "core/paths.h"
+#include "scene/artwork_picture.h"
 #include "scene/artwork_relief.h"
 #include "scene/scene.h"
 #include "support/file_error.h"

@@ -1,9 +1,9 @@
-#include "scene/nudge.h"
-
 #include <stdexcept>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
+
+#include "scene/mockup_pose.h"
 
 namespace livery {
 namespace {

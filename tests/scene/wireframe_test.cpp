@@ -1,5 +1,3 @@
-#include "scene/wireframe.h"
-
 #include <array>
 #include <string>
 #include <utility>

@@ -8,7 +8,6 @@
 
 #include <gtest/gtest.h>
 
-#include "appearance/fit/colour_record.h"
 #include "appearance/fit/recolour.h"
 #include "session/some_commands.h"
 #include "support/file_error.h"

@@ -1,5 +1,3 @@
-#include "studio/product/lit_share.h"
-
 #include <numbers>
 
 #include <gtest/gtest.h>
@@ -7,6 +5,7 @@
 #include "live/projector_setup.h"
 #include "scene/library.h"
 #include "studio/box_mesh.h"
+#include "studio/product/product_answers.h"
 
 namespace livery {
 namespace {

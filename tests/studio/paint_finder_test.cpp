@@ -1,10 +1,9 @@
-#include "studio/paint/paint_finder.h"
-
 #include <gtest/gtest.h>
 
 #include "appearance/material_library.h"
 #include "appearance/paint_figures.h"
 #include "core/colour.h"
+#include "studio/paint/users_library.h"
 
 namespace livery {
 namespace {

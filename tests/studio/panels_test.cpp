@@ -7,7 +7,6 @@
 #include <imgui.h>
 #include <imgui_internal.h>
 
-#include "appearance/fit/colour_record.h"
 #include "appearance/fit/recolour.h"
 #include "core/error.h"
 #include "core/image_io.h"
@@ -18,7 +17,7 @@
 #include "studio/kit/theme.h"
 #include "studio/kit/ui_map.h"
 #include "studio/paint/library_panel.h"
-#include "studio/paint/swatch_cell.h"
+#include "studio/paint/swatches.h"
 #include "studio/panels_fixture.h"
 #include "studio/studio.h"
 #include "support/temporary_folder.h"

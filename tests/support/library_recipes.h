@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "appearance/fit/fit_samples.h"
+#include "appearance/fit/fit_search.h"
 #include "appearance/material.h"
 
 namespace livery {

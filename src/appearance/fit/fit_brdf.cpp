@@ -13,7 +13,6 @@
 #include <glm/trigonometric.hpp>
 
 #include "appearance/bsdf.h"
-#include "appearance/fit/fit_film.h"
 #include "appearance/fit/fit_search.h"
 #include "appearance/fit/fit_starts.h"
 #include "appearance/paint_bsdf.h"

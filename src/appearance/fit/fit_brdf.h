@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "appearance/fit/fit_samples.h"
+#include "appearance/fit/fit_search.h"
 #include "appearance/material.h"
 #include "appearance/measured/measured_grid.h"
 #include "core/progress.h"

@@ -2,15 +2,121 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include <ceres/ceres.h>
+#include <glm/geometric.hpp>
 
+#include "core/colour.h"
 #include "core/solve.h"
 
 namespace livery {
+
+namespace {
+
+constexpr double kLargestTheta_rad = 80.0 * std::numbers::pi / 180.0;
+
+}  // namespace
+
+FitSamples fit_samples(const ReflectanceFunction& truth_working,
+                       const std::function<bool(const DirectionPair&)>& is_measured,
+                       FitGridSize size) {
+    FitSamples samples;
+    const double lowest = std::cos(kLargestTheta_rad);
+    for (int i = 0; i < size.theta_h; ++i) {
+        const double root = (i + 0.5) / size.theta_h;
+        const double theta_h = 0.5 * std::numbers::pi * root * root;
+        const glm::dvec3 h(std::sin(theta_h), 0.0, std::cos(theta_h));
+        const glm::dvec3 across(std::cos(theta_h), 0.0, -std::sin(theta_h));
+        for (int j = 0; j < size.theta_d; ++j) {
+            const double theta_d = kLargestTheta_rad * (j + 0.5) / size.theta_d;
+            for (int k = 0; k < size.phi_d; ++k) {
+                const double phi_d = std::numbers::pi * (k + 0.5) / size.phi_d;
+                const glm::dvec3 aside =
+                    std::sin(theta_d) *
+                    (std::cos(phi_d) * across + glm::dvec3(0.0, std::sin(phi_d), 0.0));
+                const DirectionPair pair{std::cos(theta_d) * h + aside,
+                                         std::cos(theta_d) * h - aside};
+                if (pair.wi.z < lowest || pair.wo.z < lowest || !is_measured(pair)) continue;
+                samples.pairs.push_back(pair);
+                samples.values_working.push_back(truth_working(pair.wi, pair.wo));
+            }
+        }
+    }
+    return samples;
+}
+
+namespace {
+
+constexpr double kFloor = 0.01;  // of f cos: darker is not seen beside a highlight
+
+/// Of CIEDE2000: below it a difference counts by its square, since its length has no slope at 0.
+constexpr double kSoft = 0.5;
+/// Of the mean square of CIEDE2000 beside its mean: at 10 both count alike.
+constexpr double kSquares = 0.1;
+/// Of the mean square of the logarithms: at a third it counts as much as itself not squared.
+constexpr double kLogarithms = 3.0;
+
+double measure(Metric metric, double value, double cosine) {
+    const double seen = std::max(value, 0.0) * cosine;
+    return metric == Metric::logarithm ? std::log(seen + kFloor) : std::cbrt(seen);
+}
+
+std::size_t count_of(std::size_t all, std::size_t stride) { return (all + stride - 1) / stride; }
+
+}  // namespace
+
+Residuals sample_residuals(const FitSamples& samples, Metric metric, std::size_t stride) {
+    std::vector<double> wanted;
+    for (std::size_t i = 0; i < samples.pairs.size(); i += stride) {
+        for (int c = 0; c < 3; ++c) {
+            wanted.push_back(measure(metric, samples.values_working[i][c], samples.pairs[i].wi.z));
+        }
+    }
+    const std::size_t count = wanted.size();
+    return {count,
+            [&samples, metric, stride, wanted = std::move(wanted)](
+                const BoundBsdf<double, glm::dvec3>& paint, double* values) {
+                std::size_t at = 0;
+                for (std::size_t i = 0; i < samples.pairs.size(); i += stride) {
+                    const DirectionPair& pair = samples.pairs[i];
+                    const glm::dvec3 value = paint.eval(pair.wi, pair.wo);
+                    for (int c = 0; c < 3; ++c, ++at) {
+                        values[at] = measure(metric, value[c], pair.wi.z) - wanted[at];
+                    }
+                }
+            }};
+}
+
+Residuals sphere_residuals(const DifferenceTruth& truth,
+                           const FitSamples& samples,
+                           SphereStrides strides) {
+    const Residuals logarithms = sample_residuals(samples, Metric::logarithm, strides.samples);
+    const std::size_t pixels = count_of(truth.sphere_pairs.size(), strides.pixels);
+    return {
+        3 * pixels + logarithms.count,
+        [&truth, logarithms, strides, pixels](const BoundBsdf<double, glm::dvec3>& paint,
+                                              double* values) {
+            const double pixel_weight = 1.0 / static_cast<double>(pixels);
+            for (std::size_t i = 0; i < truth.sphere_pairs.size(); i += strides.pixels) {
+                const DirectionPair& pair = truth.sphere_pairs[i];
+                const glm::dvec3 off = ciede2000_vector(
+                    lab_on_sphere(paint.eval(pair.wi, pair.wo), pair.wi.z), truth.sphere_labs[i]);
+                // |off|^2 (1 / sqrt(|off|^2 + soft^2) + squares)
+                const double squared = glm::dot(off, off);
+                const double weight =
+                    std::sqrt(pixel_weight * (1.0 / std::sqrt(squared + kSoft * kSoft) + kSquares));
+                for (int c = 0; c < 3; ++c) *values++ = weight * off[c];
+            }
+            logarithms.write(paint, values);
+            const double weight = std::sqrt(kLogarithms / static_cast<double>(logarithms.count));
+            for (std::size_t i = 0; i < logarithms.count; ++i) values[i] *= weight;
+        }};
+}
+
 namespace {
 
 constexpr double kDifference = 1e-5;  // of a coordinate, whose natural scale is 1

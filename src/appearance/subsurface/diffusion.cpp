@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "appearance/subsurface/fresnel_moments.h"
+#include "appearance/subsurface/scattering_medium.h"
 #include "core/mutation.h"
 
 namespace livery {

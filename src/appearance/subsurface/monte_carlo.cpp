@@ -9,8 +9,8 @@
 #include <fmt/format.h>
 #include <glm/vec3.hpp>
 
-#include "appearance/subsurface/fresnel_moments.h"
 #include "appearance/subsurface/layered_sources.h"
+#include "appearance/subsurface/scattering_medium.h"
 #include "core/mutation.h"
 #include "core/parallel.h"
 #include "core/random.h"

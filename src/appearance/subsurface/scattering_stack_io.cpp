@@ -5,7 +5,6 @@
 #include "appearance/subsurface/scattering_stack.h"
 #include "core/error.h"
 #include "core/json.h"
-#include "core/json_ranges.h"
 #include "core/paths.h"
 
 namespace livery {

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "appearance/subsurface/fresnel_moments.h"
+#include "appearance/subsurface/scattering_medium.h"
 #include "core/mutation.h"
 #include "core/quadrature.h"
 

@@ -5,10 +5,9 @@
 
 #include <fmt/format.h>
 
-#include "appearance/subsurface/fresnel_moments.h"
-#include "appearance/subsurface/inverse_hankel.h"
 #include "appearance/subsurface/layered_sources.h"
-#include "appearance/subsurface/made_profile.h"
+#include "appearance/subsurface/profile_integrals.h"
+#include "appearance/subsurface/scattering_medium.h"
 #include "appearance/subsurface/single_scattering.h"
 
 namespace livery {

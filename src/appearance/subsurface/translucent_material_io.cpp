@@ -4,7 +4,6 @@
 #include "appearance/subsurface/translucent_material.h"
 #include "core/error.h"
 #include "core/json.h"
-#include "core/json_ranges.h"
 #include "core/paths.h"
 
 namespace livery {

@@ -20,7 +20,7 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "core/statistics.h"
-#include "core/utc.h"
+#include "core/time.h"
 #include "core/worst_error.h"
 
 namespace livery {

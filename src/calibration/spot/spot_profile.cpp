@@ -7,9 +7,9 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
-#include "appearance/gloss_optics.h"
+#include "appearance/paint_figures.h"
 #include "appearance/subsurface/fit_profile.h"
-#include "appearance/subsurface/fresnel_moments.h"
+#include "appearance/subsurface/scattering_medium.h"
 #include "core/error.h"
 
 namespace livery {

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <string>
 
+#include "capture/camera.h"
 #include "capture/camera_messages.h"
 #include "capture/gphoto/gphoto_camera.h"
 
@@ -21,5 +22,12 @@ TakenPhotograph take_photograph(GphotoCamera& gphoto,
                                 double exposure_s,
                                 bool has_exposure,
                                 std::chrono::milliseconds deadline);
+
+/// Programs that have the camera at a USB port open: "name (number)". This one does not count.
+std::string programs_with(const std::string& port);
+/// What a number of libgphoto2 means.
+CameraFault fault_of_gphoto(const std::string& camera,
+                            const std::string& port,
+                            const GphotoError& error);
 
 }  // namespace livery

@@ -15,9 +15,7 @@
 
 #include "capture/camera_messages.h"
 #include "capture/gphoto/gphoto_camera.h"
-#include "capture/gphoto/gphoto_fault.h"
 #include "capture/gphoto/gphoto_photograph.h"
-#include "capture/gphoto/gphoto_settings.h"
 
 namespace livery {
 namespace {

@@ -57,14 +57,9 @@ Command evaluate_export_command() {
     command.summary = "a round's ballots without names, in an order of chance, as CSV or JSON";
     command.example = "livery evaluate export --ballots votes.livery-ballots --out round.csv";
     command.options = {
-        {"--ballots", "FILE", "a file of ballots", &arguments->ballots, true, {}},
-        {"--round",
-         "N",
-         "which of its rounds (default: the last closed)",
-         &arguments->round,
-         false,
-         {}},
-        {"--out", "FILE", "what to write, .csv or .json", &arguments->out, true, {}},
+        {"--ballots", "FILE", "a file of ballots", &arguments->ballots, true},
+        {"--round", "N", "which of its rounds (default: the last closed)", &arguments->round},
+        {"--out", "FILE", "what to write, .csv or .json", &arguments->out, true},
     };
     command.run = [arguments](const CommonOptions& common, const Progress&) {
         const std::filesystem::path out = arguments->out;

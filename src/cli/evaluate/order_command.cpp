@@ -65,20 +65,16 @@ Command evaluate_order_command() {
     command.summary = "in which order looks are shown, and under which codes";
     command.example = "livery evaluate order --designs 4 --evaluators 10 --seed 7";
     command.options = {
-        {"--designs", "K", "how many looks, 2 to 26", &arguments->designs, true, {}},
+        {"--designs", "K", "how many looks, 2 to 26", &arguments->designs, true},
         {"--evaluators",
          "N",
          "how many people will look (default: a wave for each row)",
-         &arguments->evaluators,
-         false,
-         {}},
-        {"--wave", "N", "at most so many look together (default 3)", &arguments->wave, false, {}},
+         &arguments->evaluators},
+        {"--wave", "N", "at most so many look together (default 3)", &arguments->wave},
         {"--names",
          "A,B,...",
          "what the looks are called (default (a), (b), ...)",
-         &arguments->names,
-         false,
-         {}},
+         &arguments->names},
     };
     command.run = [arguments](const CommonOptions& common, const Progress&) {
         const PresentationOrder order = presentation_order(arguments->designs,

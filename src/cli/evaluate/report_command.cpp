@@ -10,12 +10,12 @@
 #include "core/error.h"
 #include "core/paths.h"
 #include "core/system/version.h"
-#include "core/utc.h"
+#include "core/time.h"
 #include "core/utf8.h"
 #include "evaluation/report/html_report.h"
 #include "evaluation/report/pdf_report.h"
 #include "evaluation/report/round_report.h"
-#include "jobs/calibrate/calibration_figures.h"
+#include "jobs/calibrate/calibration_grade.h"
 #include "scene/colour_calibration.h"
 
 namespace livery {
@@ -116,27 +116,17 @@ Command evaluate_report_command() {
           "FILE|DIR",
           "a file in .html or .pdf, or a folder for both",
           &arguments->out,
-          true,
-          {}},
-         {"--title",
-          "TEXT",
-          "what stands above it (default: the round)",
-          &arguments->title,
-          false,
-          {}},
+          true},
+         {"--title", "TEXT", "what stands above it (default: the round)", &arguments->title},
          {"--details",
           "FILE",
           "what was asked, how it was shown, pictures (default: round.json of the folder "
           "BALLOTS-round-N beside the ballots, where it is)",
-          &arguments->details,
-          false,
-          {}},
+          &arguments->details},
          {"--calibration",
           "DIR",
           "the round's calibration, for its figures",
-          &arguments->calibration,
-          false,
-          {}}});
+          &arguments->calibration}});
     command.run = [arguments](const CommonOptions& common, const Progress& progress) {
         check_report_options(*arguments);
         VoteSource source =

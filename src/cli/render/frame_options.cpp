@@ -2,19 +2,47 @@
 
 #include <cmath>
 #include <cstdint>
+#include <utility>
 
 #include <fmt/format.h>
 
+#include "compensation/compensation.h"
 #include "core/error.h"
-#include "core/json_ranges.h"
+#include "core/json.h"
 #include "jobs/calibrate/calibration_folder.h"
-#include "jobs/calibrate/calibration_origin.h"
 #include "ledger/pass_costs.h"
 #include "scene/library.h"
 #include "scene/mockup_mask.h"
 #include "twin/description.h"
 
 namespace livery {
+
+DesignWhite design_white_of(const ColourCalibration& calibration,
+                            double percentile,
+                            const Image8& counted,
+                            std::string mask) {
+    DesignWhite white{
+        design_white_luminance(calibration, percentile, counted), percentile, std::move(mask), 0};
+    for (std::size_t i = 0; i < calibration.status.values.size(); ++i) {
+        const bool valid = is_valid(static_cast<PixelStatus>(calibration.status.values[i]));
+        white.pixels += valid && (counted.empty() || counted.values[i] != 0);
+    }
+    return white;
+}
+
+std::string text_of(const DesignWhite& white) {
+    return fmt::format("design white {:.4g}, the {:g}th percentile of {} pixels: {}",
+                       white.y,
+                       white.percentile,
+                       white.pixels,
+                       white.mask);
+}
+
+void tell(const DesignWhite& white, Outcome& outcome) {
+    outcome.figures["design_white_y"] = white.y;
+    outcome.figures["design_white_mask"] = white.mask;
+    outcome.figures["design_white_pixels"] = white.pixels;
+}
 
 namespace {
 
@@ -30,40 +58,25 @@ std::vector<Option> frame_options(FrameArguments& arguments) {
         {"--product",
          "FILE",
          "a mesh or product file, or car, player, sphere (default car)",
-         &arguments.product,
-         false,
-         {}},
+         &arguments.product},
         unit_option(arguments.unit),
         {"--look",
          "FILE|NAME",
          "a look file, a shipped look's name or a variant of the product (default solid-red)",
-         &arguments.look,
-         false,
-         {}},
+         &arguments.look},
         {"--calibration",
          "DIR",
          "calibration folder: corrects, and says where the projector stands",
-         &arguments.calibration,
-         false,
-         {}},
-        {"--anyway",
-         "",
-         "even where it was made for another product",
-         &arguments.anyway,
-         false,
-         {}},
+         &arguments.calibration},
+        {"--anyway", "", "even where it was made for another product", &arguments.anyway},
         {"--camera",
          "FILE",
          "camera file to draw from (default: the bench's projector; all of your own product)",
-         &arguments.camera,
-         false,
-         {}},
+         &arguments.camera},
         {"--eye",
          "X,Y,Z",
          "the audience's eye, mm (default: the bench's; in front of your own product)",
-         &arguments.eye,
-         false,
-         {}},
+         &arguments.eye},
         {"--quality",
          "LEVEL",
          "draft, normal, high or reference (default normal)",
@@ -73,21 +86,15 @@ std::vector<Option> frame_options(FrameArguments& arguments) {
         {"--levels",
          "EFFECT=LEVEL,...",
          "levels of single effects instead of the quality's (shadows=sharp,interreflection=none)",
-         &arguments.levels,
-         false,
-         {}},
+         &arguments.levels},
         {"--budget-ms",
          "N",
          "levels of each effect with the least error that is predicted within N ms",
-         &arguments.budget_ms,
-         false,
-         {}},
+         &arguments.budget_ms},
         {"--swap-budget-ms",
          "N",
          "the same for what runs with every paint; both may be given",
-         &arguments.swap_budget_ms,
-         false,
-         {}},
+         &arguments.swap_budget_ms},
         {"--stage",
          "STAGE",
          "radiance, or projector: the corrected input (default radiance)",
@@ -103,9 +110,7 @@ std::vector<Option> frame_options(FrameArguments& arguments) {
         {"--design-white",
          "PERCENT",
          "percentile of the brightest neutral that becomes 1 (default 20)",
-         &arguments.design_white,
-         false,
-         {}},
+         &arguments.design_white},
     };
 }
 

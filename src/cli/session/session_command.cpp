@@ -139,7 +139,7 @@ Command session_command(const std::string& name,
     command.name = "session " + name;
     command.summary = summary;
     command.example = "livery session " + name + " " + example;
-    command.options = {{"file", "FILE", "the session", &arguments->file, true, {}}};
+    command.options = {{"file", "FILE", "the session", &arguments->file, true}};
     for (Option& option : options) command.options.push_back(std::move(option));
     return command;
 }
@@ -154,9 +154,7 @@ Command new_command() {
                         {{"--product",
                           "FILE",
                           "a mesh or product file, or car, player, sphere (default car)",
-                          &arguments->product,
-                          false,
-                          {}},
+                          &arguments->product},
                          unit_option(arguments->unit)});
     command.run = [arguments](const CommonOptions&, const Progress&) {
         std::error_code error;
@@ -193,8 +191,7 @@ Command apply_command() {
           "JSON...",
           "one command each (see docs/session.md)",
           &arguments->commands,
-          true,
-          {}}});
+          true}});
     command.run = [arguments](const CommonOptions&, const Progress&) {
         std::vector<SessionCommand> commands;
         for (const std::string& text : arguments->commands) {
@@ -212,7 +209,7 @@ Command step_command(bool back) {
                         back ? "take back the last changes" : "do again what was taken back",
                         "show.livery --steps 2",
                         arguments,
-                        {{"--steps", "N", "how many (default 1)", &arguments->steps, false, {}}});
+                        {{"--steps", "N", "how many (default 1)", &arguments->steps}});
     command.run = [arguments, back](const CommonOptions&, const Progress&) {
         if (arguments->steps < 1) {
             throw std::invalid_argument(
@@ -226,13 +223,12 @@ Command step_command(bool back) {
 
 Command export_command() {
     const auto arguments = std::make_shared<SessionArguments>();
-    Command command =
-        session_command("export",
-                        "write a look as a file, its own paints beside it",
-                        "show.livery --look 1 --out look.json",
-                        arguments,
-                        {{"--look", "N", "the look's number", &arguments->look, true, {}},
-                         {"--out", "FILE", "the look file", &arguments->out, true, {}}});
+    Command command = session_command("export",
+                                      "write a look as a file, its own paints beside it",
+                                      "show.livery --look 1 --out look.json",
+                                      arguments,
+                                      {{"--look", "N", "the look's number", &arguments->look, true},
+                                       {"--out", "FILE", "the look file", &arguments->out, true}});
     command.run = [arguments](const CommonOptions&, const Progress&) {
         const Summary summary = read_summary(arguments->file);
         Outcome outcome;
@@ -248,13 +244,13 @@ Command export_command() {
 
 Command export_product_command() {
     const auto arguments = std::make_shared<SessionArguments>();
-    Command command = session_command(
-        "export-product",
-        "write the product as glTF (.glb) that wears all looks, for other programs",
-        "show.livery --look 1 --out car.glb",
-        arguments,
-        {{"--look", "N", "the look that it wears first", &arguments->look, true, {}},
-         {"--out", "FILE", "the mesh, .glb", &arguments->out, true, {}}});
+    Command command =
+        session_command("export-product",
+                        "write the product as glTF (.glb) that wears all looks, for other programs",
+                        "show.livery --look 1 --out car.glb",
+                        arguments,
+                        {{"--look", "N", "the look that it wears first", &arguments->look, true},
+                         {"--out", "FILE", "the mesh, .glb", &arguments->out, true}});
     command.run = [arguments](const CommonOptions&, const Progress&) {
         if (Path(arguments->out).extension() != ".glb") {
             throw std::invalid_argument("--out: found \"" + arguments->out +
@@ -279,7 +275,7 @@ Command import_command() {
                         "add a look from a file",
                         "show.livery --look-file look.json",
                         arguments,
-                        {{"--look-file", "FILE", "a look file", &arguments->look_file, true, {}}});
+                        {{"--look-file", "FILE", "a look file", &arguments->look_file, true}});
     command.run = [arguments](const CommonOptions&, const Progress&) {
         const Look look = read_look_file(arguments->look_file);
         return changed(arguments->file,
@@ -327,20 +323,10 @@ Command seats_command() {
         "where people sit, whose eye looks are drawn for, and what the others miss",
         "show.livery --arc 5 --eye mean --look all",
         arguments,
-        {{"--arc", "N", "place N seats anew, in an arc before the eye", &arguments->arc, false, {}},
-         {"--eye",
-          "WHOSE",
-          "draw looks for: hand, mean, or a seat's number",
-          &arguments->eye,
-          false,
-          {}},
-         {"--look",
-          "N|all",
-          "tell what each seat misses of it (CIEDE2000)",
-          &arguments->looks,
-          false,
-          {}},
-         {"--maps", "DIR", "with --look: a picture of each", &arguments->maps, false, {}}});
+        {{"--arc", "N", "place N seats anew, in an arc before the eye", &arguments->arc},
+         {"--eye", "WHOSE", "draw looks for: hand, mean, or a seat's number", &arguments->eye},
+         {"--look", "N|all", "tell what each seat misses of it (CIEDE2000)", &arguments->looks},
+         {"--maps", "DIR", "with --look: a picture of each", &arguments->maps}});
     command.run = [arguments](const CommonOptions&, const Progress& progress) {
         if (!arguments->maps.empty() && arguments->looks.empty()) {
             throw std::invalid_argument("--maps: found no --look, expected the looks to compare");
@@ -365,7 +351,7 @@ Command picture_command() {
         "draw a look as its projector shows it",
         "show.livery --look 1 --out look.png",
         arguments,
-        {{"--look", "N", "the look's number", &arguments->look, true, {}},
+        {{"--look", "N", "the look's number", &arguments->look, true},
          {"--stage",
           "STAGE",
           "radiance, or projector: the corrected input (default radiance)",
@@ -375,10 +361,8 @@ Command picture_command() {
          {"--seat",
           "WHOSE",
           "draw for another eye: hand, mean, or a seat's number (default the session's)",
-          &arguments->eye,
-          false,
-          {}},
-         {"--out", "FILE", "the picture, .png or .exr", &arguments->out, true, {}}});
+          &arguments->eye},
+         {"--out", "FILE", "the picture, .png or .exr", &arguments->out, true}});
     command.run = [arguments](const CommonOptions& common, const Progress& progress) {
         RenderRequest request;
         request.stage =

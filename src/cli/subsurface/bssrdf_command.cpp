@@ -9,7 +9,7 @@
 #include "appearance/subsurface/translucent_material.h"
 #include "cli/command.h"
 #include "cli/subsurface/medium_options.h"
-#include "core/text/marked_block.h"
+#include "core/text/markup.h"
 
 namespace livery {
 
@@ -250,9 +250,7 @@ Command bssrdf_command() {
         {"--layers",
          "FILE",
          "translucent layers in the place of one medium (docs/files.md)",
-         &arguments->layers,
-         false,
-         {}},
+         &arguments->layers},
         {"--model",
          "NAME",
          "a model of docs/subsurface.md, montecarlo, or best: the nearest to Monte Carlo (default "
@@ -263,28 +261,17 @@ Command bssrdf_command() {
         {"--radii-mm",
          "R1,R2,...",
          "distances from where the light enters (default 0.1,0.2,0.5,1,2,5,10)",
-         &arguments->radii,
-         false,
-         {}},
-        {"--photons", "N", "of Monte Carlo (default 1000000)", &arguments->photons, false, {}},
+         &arguments->radii},
+        {"--photons", "N", "of Monte Carlo (default 1000000)", &arguments->photons},
         {"--compare",
          "",
          "instead of one medium: every model against Monte Carlo in media of all kinds",
-         &arguments->compare,
-         false,
-         {}},
-        {"--compare-layers",
-         "",
-         "the same in layers of all kinds",
-         &arguments->compare_layers,
-         false,
-         {}},
+         &arguments->compare},
+        {"--compare-layers", "", "the same in layers of all kinds", &arguments->compare_layers},
         {"--markdown",
          "FILE",
          "with --compare or --compare-layers: also write the table between the marks in this file",
-         &arguments->markdown,
-         false,
-         {}},
+         &arguments->markdown},
     };
     command.options.insert(command.options.end(), own.begin(), own.end());
     command.run = [arguments](const CommonOptions& common, const Progress& progress) {

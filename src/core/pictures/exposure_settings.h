@@ -1,6 +1,7 @@
 // How a photograph was exposed, as its file tells it.
 #pragma once
 
+#include <filesystem>
 #include <string>
 
 namespace livery {
@@ -21,5 +22,9 @@ double stops_over(const ExposureSettings& a, const ExposureSettings& b);
 
 /// "1/125 s, f/8, ISO 200", of what it has.
 std::string text_of(const ExposureSettings& settings);
+
+/// From the file's head alone: EXIF of JPEG, TIFF and RAW, and EXR's fields of the same names. PNG
+/// and HDR say nothing. Throws FileError.
+ExposureSettings read_exposure_settings(const std::filesystem::path& file);
 
 }  // namespace livery

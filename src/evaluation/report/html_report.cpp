@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "core/pictures/png_bytes.h"
-#include "core/text/html.h"
+#include "core/text/markup.h"
 
 namespace livery {
 

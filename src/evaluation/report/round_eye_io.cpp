@@ -1,7 +1,7 @@
 #include <algorithm>
 #include <string>
 
-#include "core/json_ranges.h"
+#include "core/json.h"
 #include "core/paths.h"
 #include "core/utf8.h"
 #include "evaluation/report/round_eye_json.h"

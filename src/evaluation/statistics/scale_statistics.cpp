@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
-#include "core/shuffle.h"
+#include "core/random.h"
 #include "evaluation/statistics/significance.h"
 
 namespace livery {

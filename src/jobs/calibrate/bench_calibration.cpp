@@ -4,9 +4,8 @@
 #include <utility>
 
 #include "calibration/predict.h"
-#include "jobs/capture_run.h"
+#include "jobs/capture_bench.h"
 #include "jobs/captured_calibration.h"
-#include "jobs/projector_irradiance.h"
 #include "scene/mockup_mask.h"
 
 namespace livery {

@@ -1,18 +1,182 @@
 #include "jobs/calibrate/calibration_check.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <iterator>
 #include <optional>
 
 #include <fmt/format.h>
+#include <glm/matrix.hpp>
 
 #include "compensation/compensation.h"
 #include "core/colour.h"
 #include "core/error.h"
-#include "jobs/calibrate/calibration_versions.h"
+#include "jobs/comparison.h"
+#include "scene/mockup_mask.h"
 
 namespace livery {
+
+namespace {
+
+/// N for a drive, of a curve equally spaced in N; in the middle of where it does not rise.
+double n_of_drive(const std::vector<float>& drive_from_n, double drive) {
+    const auto value = static_cast<float>(drive);
+    const auto last = static_cast<double>(drive_from_n.size() - 1);
+    const auto [low, high] = std::equal_range(drive_from_n.begin(), drive_from_n.end(), value);
+    const auto index = [&](auto place) {
+        return static_cast<double>(std::distance(drive_from_n.begin(), place));
+    };
+    if (low != high) return 0.5 * (index(low) + index(high - 1)) / last;
+    if (low == drive_from_n.begin()) return 0.0;
+    if (low == drive_from_n.end()) return 1.0;
+    const auto before = static_cast<double>(*(low - 1)), after = static_cast<double>(*low);
+    return (index(low) - 1.0 + (drive - before) / (after - before)) / last;
+}
+
+/// What a drive shows by a calibration's table, in the working space.
+class Shown {
+  public:
+    explicit Shown(const CompensationTable& table)
+        : table_(table),
+          index_(static_cast<std::size_t>(table.width) * static_cast<std::size_t>(table.height),
+                 -1) {
+        for (std::size_t k = 0; k < table.pixels.size(); ++k)
+            index_[table.pixels[k]] = static_cast<std::int64_t>(k);
+    }
+    bool knows(std::size_t pixel) const { return index_[pixel] >= 0; }
+    glm::dvec3 operator()(std::size_t pixel, const std::uint8_t* drive) const {
+        const auto k = static_cast<std::size_t>(index_[pixel]);
+        const auto plane = [&](std::size_t number) {
+            return static_cast<double>(table_.coefficients[number * table_.pixels.size() + k]);
+        };
+        glm::dmat3 n_from_rgb;
+        glm::dvec3 offset, n;
+        for (int row = 0; row < 3; ++row) {
+            const auto r = static_cast<std::size_t>(row);
+            for (int column = 0; column < 3; ++column)
+                n_from_rgb[column][row] = plane(3 * r + static_cast<std::size_t>(column));
+            offset[row] = plane(9 + r);
+            n[row] = n_of_drive(table_.drive_from_n[r], drive[row]);
+        }
+        return glm::inverse(n_from_rgb) * (n - offset);
+    }
+
+  private:
+    const CompensationTable& table_;
+    std::vector<std::int64_t> index_;
+};
+
+double valid_share(const ColourCalibration& calibration, const Image8& mockup) {
+    std::size_t valid = 0, all = 0;
+    for (std::size_t i = 0; i < mockup.values.size(); ++i) {
+        all += mockup.values[i] != 0;
+        valid +=
+            mockup.values[i] && is_valid(static_cast<PixelStatus>(calibration.status.values[i]));
+    }
+    return static_cast<double>(valid) / static_cast<double>(std::max<std::size_t>(all, 1));
+}
+
+ErrorStatistics colours_apart(const CompensationTable& then,
+                              const CompensationTable& now,
+                              const ColourCalibration& measured_then,
+                              const ColourCalibration& measured_now,
+                              const Image8& mockup) {
+    const Shown shown(now);
+    const double white_y = now.design_white_y;
+    const glm::dvec3 white_xyz = white_y * (xyz_from_working() * glm::dvec3(1.0));
+    const auto measured = static_cast<std::uint8_t>(PixelStatus::measured);
+    std::vector<float> errors;
+    for (const MutedColour& colour : kMutedColours) {
+        const Image8 drive = compensate(then, uniform_picture(colour, mockup));
+        const glm::dvec3 wanted =
+            lab_from_xyz(white_y * (xyz_from_working() * colour.working), white_xyz);
+        for (std::size_t i = 0; i < mockup.values.size(); ++i) {
+            if (!mockup.values[i] || !shown.knows(i)) continue;
+            if (measured_then.status.values[i] != measured ||
+                measured_now.status.values[i] != measured)
+                continue;
+            const glm::dvec3 xyz = white_y * (xyz_from_working() * shown(i, &drive.values[3 * i]));
+            errors.push_back(static_cast<float>(ciede2000(wanted, lab_from_xyz(xyz, white_xyz))));
+        }
+    }
+    return statistics_of(std::move(errors));
+}
+
+}  // namespace
+
+ImageF uniform_picture(const MutedColour& colour, const Image8& mockup) {
+    ImageF wanted(mockup.width, mockup.height, 4);
+    for (std::size_t i = 0; i < wanted.pixel_count(); ++i) {
+        for (int c = 0; c < 3; ++c)
+            wanted.values[4 * i + static_cast<std::size_t>(c)] =
+                static_cast<float>(colour.working[c]);
+        wanted.values[4 * i + 3] = mockup.values[i] ? 1.0f : 0.0f;
+    }
+    return wanted;
+}
+
+CalibrationDifference compare_calibrations(const ColourCalibration& then,
+                                           const View& projector_then,
+                                           const ColourCalibration& now,
+                                           const View& projector_now,
+                                           const Mesh& mesh) {
+    check_argument(then.width == now.width && then.height == now.height,
+                   fmt::format("calibrations of {}x{} and of {}x{} pixels: expected one projector",
+                               then.width,
+                               then.height,
+                               now.width,
+                               now.height));
+    const Image8 mockup_then = mockup_mask(mesh, projector_then),
+                 mockup = mockup_mask(mesh, projector_now);
+    CalibrationDifference difference;
+    difference.valid_then = valid_share(then, mockup_then);
+    difference.valid_now = valid_share(now, mockup);
+    const double white_then = design_white_luminance(then, kOutOfReach_percent, mockup_then),
+                 white_now = design_white_luminance(now, kOutOfReach_percent, mockup);
+    difference.brightness = white_now / white_then;
+    difference.moved_px = picture_offset(projector_now, mesh, projector_then, mesh, mockup);
+    if (then.table.grid == 0 && now.table.grid == 0) {
+        const double white_y = std::min(white_then, white_now);
+        difference.de00 = colours_apart(bake(then, white_y), bake(now, white_y), then, now, mockup);
+    }
+    return difference;
+}
+
+std::vector<GradedFigure> grade_figures(const CalibrationDifference& difference) {
+    std::vector<GradedFigure> figures;
+    if (difference.de00.pixels > 0)
+        figures.push_back(
+            {"Colours apart",
+             fmt::format("{:.2f} / {:.2f}", difference.de00.median, difference.de00.p95),
+             "CIEDE2000, median / 95 %; good under 1, usable under 2",
+             "What the older one shows if the newer one is right, against what is wanted.",
+             "If nothing was changed on the bench, one of the two was spoiled: look at their "
+             "figures, and check the one in use.",
+             grade_of(difference.de00.median, 1.0, 2.0)});
+    figures.push_back(
+        {"Pictures apart",
+         fmt::format("{:.2f} / {:.2f} px", difference.moved_px.median, difference.moved_px.p95),
+         "projector pixels, median / 95 %; good under 0.5, usable under 2",
+         "How far the two draw the mock-up from one another.",
+         "The mock-up or the projector has moved between the two: use the newer.",
+         grade_of(difference.moved_px.median, 0.5, 2.0)});
+    figures.push_back({"Design white",
+                       fmt::format("{:+.1f} %", 100.0 * (difference.brightness - 1.0)),
+                       "",
+                       "The newer one's brightest neutral against the older one's.",
+                       "",
+                       Grade::good});
+    figures.push_back(
+        {"Corrected pixels",
+         fmt::format(
+             "{:.1f} % to {:.1f} %", 100.0 * difference.valid_then, 100.0 * difference.valid_now),
+         "",
+         "Of the mock-up's pixels, the older one's and the newer one's.",
+         "",
+         Grade::good});
+    return figures;
+}
 
 namespace {
 

@@ -1,6 +1,6 @@
 // The text of origin.json, apart from the photographs beside it.
-#include "core/json_ranges.h"
-#include "jobs/calibrate/calibration_origin.h"
+#include "core/json.h"
+#include "jobs/calibrate/calibration_folder.h"
 
 namespace livery {
 

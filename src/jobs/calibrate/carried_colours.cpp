@@ -12,8 +12,8 @@
 #include "core/error.h"
 #include "core/parallel.h"
 #include "core/statistics.h"
-#include "core/utc.h"
-#include "jobs/projector_irradiance.h"
+#include "core/time.h"
+#include "jobs/captured_calibration.h"
 #include "tracing/tracer.h"
 
 namespace livery {

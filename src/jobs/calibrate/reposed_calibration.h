@@ -1,15 +1,19 @@
-// A calibration whose mock-up was bumped, made to fit again with two photographs of stripes.
+// A calibration whose mock-up stands elsewhere now, made to fit again: with two photographs of
+// stripes, or moved by hand.
 #pragma once
 
 #include <filesystem>
+#include <string>
 
 #include "calibration/registration/repose.h"
 #include "core/bench_ports.h"
 #include "core/grade.h"
 #include "core/progress.h"
-#include "jobs/calibrate/calibration_origin.h"
+#include "jobs/calibrate/calibration_folder.h"
+#include "mesh/mesh.h"
 #include "scene/colour_calibration.h"
 #include "scene/product.h"
+#include "scene/view.h"
 
 namespace livery {
 
@@ -40,5 +44,15 @@ void write_reposed(const std::filesystem::path& folder, const ReposedCalibration
 
 /// What was found, in figures for people.
 std::vector<GradedFigure> grade_figures(const Repose& found);
+
+/// Writes the calibration in the folder `from` for this view of its projector to the folder `to`,
+/// which is replaced whole or not: a version of its own that says by how much it was moved. Colours
+/// stay with their projector pixels, the camera with the projector. `mockup`: bounds of its mesh.
+/// Returns its id. Throws FileError, std::invalid_argument for another lens or size than the
+/// calibration's.
+std::string write_nudged(const std::filesystem::path& from,
+                         const std::filesystem::path& to,
+                         const View& projector,
+                         const Bounds& mockup);
 
 }  // namespace livery

@@ -1,4 +1,5 @@
-// The way of a frame, composed: scene -> radiance -> projector input.
+// The way of a frame, composed: scene -> radiance -> projector input; and pictures from files as
+// its target, or for the path tracer to light a product with.
 #pragma once
 
 #include <filesystem>
@@ -10,7 +11,9 @@
 #include "core/image.h"
 #include "core/progress.h"
 #include "gl/context.h"
+#include "mesh/mesh.h"
 #include "reference/path_tracer.h"
+#include "reference/projected_light.h"
 #include "scene/frame_plan.h"
 #include "scene/scene.h"
 #include "scene/view.h"
@@ -59,5 +62,26 @@ void check_frame_file(const std::filesystem::path& file, FrameStage stage);
 /// interval), both of what covers the pixel, and samples.Y. PNG: sRGB over black for looking at, or
 /// device values when the frame reached the projector stage. Throws FileError for another suffix.
 void write_frame(const std::filesystem::path& file, const RenderedFrame& frame, FrameStage stage);
+
+struct TargetPicture {
+    ImageF wanted;  ///< working space, coverage in the fourth channel
+    bool has_coverage = false;
+};
+
+/// Linear Rec.709 floats -> working space with coverage: 1 where the file has no A, by which colour
+/// is multiplied where it has one (associated alpha). NaN and Inf stay: the compensation counts
+/// them as invalid. Throws FileError (size, integers, channels).
+TargetPicture read_target_picture(const std::filesystem::path& file, int width, int height);
+
+/// Floats are light in linear Rec.709, what they do not cover dark; integers are sRGB. 1 is what
+/// makes white of a white diffuser that faces the projector at the middle of the mesh. Throws
+/// FileError (another size than the projector's, channels, a negative value or no number, a product
+/// behind the projector).
+std::shared_ptr<const ProjectedLight> read_projected_picture(const std::filesystem::path& file,
+                                                             const View& projector,
+                                                             const Mesh& mesh);
+
+/// From the eye, of that size, by a lens that has all of the mesh in the picture.
+View view_of_all(const Mesh& mesh, const glm::dvec3& eye_mm, int width, int height);
 
 }  // namespace livery

@@ -4,7 +4,7 @@
 #include <chrono>
 #include <map>
 
-#include "core/pictures/square_means.h"
+#include "core/pictures/picture_means.h"
 #include "core/statistics.h"
 #include "radiance/renderer.h"
 #include "scene/frame_plan.h"

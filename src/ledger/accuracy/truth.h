@@ -6,7 +6,7 @@
 #include <string>
 
 #include "core/image.h"
-#include "core/pictures/colour_differences.h"
+#include "core/pictures/picture_means.h"
 #include "core/progress.h"
 #include "jobs/comparison.h"
 #include "ledger/accuracy/scenes.h"

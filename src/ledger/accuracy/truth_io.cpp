@@ -13,7 +13,7 @@
 #include "core/image_io.h"
 #include "core/parallel.h"
 #include "core/paths.h"
-#include "core/pictures/square_means.h"
+#include "core/pictures/picture_means.h"
 #include "core/statistics.h"
 #include "core/worst_error.h"
 #include "ledger/accuracy/truth.h"

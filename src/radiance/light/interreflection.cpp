@@ -9,9 +9,9 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include "appearance/gloss_optics.h"
 #include "appearance/paint_bsdf.h"
-#include "appearance/subsurface/fresnel_moments.h"
+#include "appearance/paint_figures.h"
+#include "appearance/subsurface/scattering_medium.h"
 #include "core/colour.h"
 #include "core/error.h"
 #include "core/parallel.h"

@@ -13,7 +13,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "core/huge_pages.h"
+#include "core/memory.h"
 #include "radiance/lanes/mirror_sums.h"
 #include "radiance/light/mirror_lobes.h"
 #include "radiance/light/sphere_lookup.h"

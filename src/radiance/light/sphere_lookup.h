@@ -13,8 +13,8 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
-#include "core/huge_pages.h"
 #include "core/image.h"
+#include "core/memory.h"
 #include "radiance/lanes/mirror_sums.h"
 #include "radiance/light/environment_filter.h"
 #include "scene/look.h"

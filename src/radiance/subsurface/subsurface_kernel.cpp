@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "appearance/subsurface/exact_totals.h"
-#include "appearance/subsurface/fresnel_moments.h"
+#include "appearance/subsurface/scattering_medium.h"
 #include "appearance/subsurface/subsurface_profile.h"
 #include "appearance/subsurface/translucent_paint.h"
 #include "core/colour.h"

@@ -11,11 +11,11 @@
 #include "scene/artwork_picture.h"
 #include "studio/artwork/artwork_panel.h"
 #include "studio/artwork/artwork_values.h"
-#include "studio/kit/user_folders.h"
+#include "studio/kit/folders.h"
 #include "studio/kit/words.h"
-#include "studio/paint/chosen_part.h"
 #include "studio/paint/paint_choice.h"
-#include "studio/paint/paint_finder.h"
+#include "studio/paint/parts_panel.h"
+#include "studio/paint/users_library.h"
 
 namespace livery {
 

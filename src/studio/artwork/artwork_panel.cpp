@@ -12,9 +12,9 @@
 #include "studio/artwork/artwork_values.h"
 #include "studio/kit/theme.h"
 #include "studio/kit/widgets.h"
-#include "studio/paint/chosen_part.h"
 #include "studio/paint/paint_choice.h"
-#include "studio/paint/swatch_textures.h"
+#include "studio/paint/parts_panel.h"
+#include "studio/paint/swatches.h"
 
 namespace livery {
 

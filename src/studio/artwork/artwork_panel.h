@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "scene/look.h"
-#include "studio/kit/held.h"
+#include "studio/kit/widgets.h"
 
 namespace livery {
 

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/freed_memory.h"
+#include "core/memory.h"
 #include "core/worker.h"
 
 namespace livery {

@@ -7,9 +7,9 @@
 #include <imgui_internal.h>
 #include <imgui_stdlib.h>
 
+#include "studio/kit/folders.h"
 #include "studio/kit/tab_order.h"
 #include "studio/kit/theme.h"
-#include "studio/kit/user_folders.h"
 #include "studio/kit/widgets.h"
 #include "studio/studio.h"
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "studio/kit/file_places.h"
+#include "studio/kit/folders.h"
 #include "studio/kit/user_settings.h"
 
 namespace livery {

@@ -15,7 +15,7 @@ namespace {
 struct Stop {
     ImGuiID id = 0;
     std::string name;
-    ImGuiWindow* window = nullptr;
+    ::ImGuiWindow* window = nullptr;
     ImGuiNavLayer layer = ImGuiNavLayer_Main;
     ImGuiID focus_scope = 0;
     ImRect rectangle;  ///< of the window's content
@@ -27,16 +27,16 @@ std::vector<Stop> stops;
 std::optional<std::size_t> group_start;
 
 /// The window that has the keyboard to itself: the topmost dialog or list, or none.
-const ImGuiWindow* keyboard_window() {
+const ::ImGuiWindow* keyboard_window() {
     const ImGuiContext& g = *ImGui::GetCurrentContext();
     for (int i = g.OpenPopupStack.Size - 1; i >= 0; --i) {
-        const ImGuiWindow* window = g.OpenPopupStack[i].Window;
+        const ::ImGuiWindow* window = g.OpenPopupStack[i].Window;
         if (window && !(window->Flags & ImGuiWindowFlags_Tooltip)) return window;
     }
     return nullptr;
 }
 
-bool is_inside(const ImGuiWindow* window, const ImGuiWindow* outer) {
+bool is_inside(const ::ImGuiWindow* window, const ::ImGuiWindow* outer) {
     for (; window; window = window->ParentWindow) {
         if (window == outer) return true;
         if (!(window->Flags & ImGuiWindowFlags_ChildWindow)) return false;
@@ -88,7 +88,7 @@ void start_tab_order() {
 void note_tab_stop(const std::string& name) {
     const ImGuiContext& g = *ImGui::GetCurrentContext();
     const ImGuiLastItemData& item = g.LastItemData;
-    ImGuiWindow* window = g.CurrentWindow;
+    ::ImGuiWindow* window = g.CurrentWindow;
     const ImGuiItemFlags inert =
         ImGuiItemFlags_Disabled | ImGuiItemFlags_NoNav | ImGuiItemFlags_NoTabStop;
     if (item.ID == 0 || (item.InFlags & inert) != 0 || window->Hidden ||
@@ -120,11 +120,11 @@ void end_tab_group(std::optional<unsigned> preferred) {
 
 void move_focus(int step) {
     const ImGuiContext& g = *ImGui::GetCurrentContext();
-    const ImGuiWindow* only = keyboard_window();
+    const ::ImGuiWindow* only = keyboard_window();
     std::vector<Stop*> order;
     for (Stop& stop : stops) {
         // Without a dialog: the program's own window, which is where all begins.
-        const ImGuiWindow* outer = only ? only : stops.front().window->RootWindow;
+        const ::ImGuiWindow* outer = only ? only : stops.front().window->RootWindow;
         if (is_inside(stop.window, outer)) order.push_back(&stop);
     }
     if (order.empty()) return;

@@ -9,8 +9,7 @@
 #include <imgui_internal.h>
 
 #include "core/colour.h"
-#include "core/ten_degree.h"
-#include "studio/kit/held.h"
+#include "core/spectrum.h"
 #include "studio/kit/theme.h"
 #include "studio/kit/words.h"
 #include "studio/paint/paint_parameters.h"

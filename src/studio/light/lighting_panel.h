@@ -10,7 +10,7 @@
 #include "gl/handles.h"
 #include "scene/look.h"
 #include "scene/product.h"
-#include "studio/kit/held.h"
+#include "studio/kit/widgets.h"
 #include "studio/light/accuracy_page.h"
 #include "studio/light/reference_tracing.h"
 

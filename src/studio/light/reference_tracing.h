@@ -5,8 +5,8 @@
 #include <memory>
 #include <string>
 
+#include "live/frame_pictures.h"
 #include "live/reference_thread.h"
-#include "live/texture_pool.h"
 
 namespace livery {
 

@@ -14,7 +14,7 @@
 #include "core/log.h"
 #include "live/projector_setup.h"
 #include "projection/picture_port.h"
-#include "scene/wireframe.h"
+#include "scene/mockup_mask.h"
 #include "studio/kit/background.h"
 #include "studio/kit/theme.h"
 #include "studio/kit/widgets.h"

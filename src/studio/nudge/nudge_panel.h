@@ -7,7 +7,7 @@
 
 #include "core/image.h"
 #include "projection/projector_screen.h"
-#include "scene/nudge.h"
+#include "scene/mockup_pose.h"
 
 namespace livery {
 

@@ -20,11 +20,9 @@
 #include "studio/kit/theme.h"
 #include "studio/kit/ui_map.h"
 #include "studio/kit/widgets.h"
-#include "studio/paint/chosen_part.h"
-#include "studio/paint/paint_finder.h"
 #include "studio/paint/paint_parameters.h"
-#include "studio/paint/swatch_cell.h"
-#include "studio/paint/swatch_textures.h"
+#include "studio/paint/parts_panel.h"
+#include "studio/paint/swatches.h"
 #include "studio/paint/users_library.h"
 #include "studio/studio.h"
 

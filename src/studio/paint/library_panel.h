@@ -9,7 +9,7 @@
 #include <string>
 
 #include "gl/handles.h"
-#include "studio/paint/swatch_textures.h"
+#include "studio/paint/swatches.h"
 #include "studio/paint/users_library.h"
 
 namespace livery {

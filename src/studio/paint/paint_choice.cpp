@@ -5,8 +5,7 @@
 #include <imgui.h>
 
 #include "studio/kit/theme.h"
-#include "studio/paint/paint_finder.h"
-#include "studio/paint/swatch_textures.h"
+#include "studio/paint/swatches.h"
 #include "studio/paint/users_library.h"
 
 namespace livery {

@@ -6,15 +6,15 @@
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
-#include "appearance/fit/colour_record.h"
+#include "appearance/fit/recolour.h"
 #include "appearance/parameter_table.h"
 #include "core/error.h"
 #include "studio/kit/file_dialog.h"
 #include "studio/kit/theme.h"
 #include "studio/kit/widgets.h"
-#include "studio/paint/paint_finder.h"
 #include "studio/paint/paint_panel.h"
 #include "studio/paint/paint_parameters.h"
+#include "studio/paint/users_library.h"
 
 namespace livery {
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "studio/kit/held.h"
+#include "studio/kit/widgets.h"
 #include "studio/paint/paint_colour_row.h"
 #include "studio/paint/paint_portrait.h"
 

@@ -20,7 +20,7 @@
 #include "studio/paint/lobe_plot.h"
 #include "studio/paint/paint_choice.h"
 #include "studio/paint/paint_panel.h"
-#include "studio/paint/swatch_textures.h"
+#include "studio/paint/swatches.h"
 
 namespace livery {
 

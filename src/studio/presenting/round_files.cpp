@@ -7,11 +7,11 @@
 #include "core/error.h"
 #include "core/image_io.h"
 #include "core/paths.h"
-#include "core/utc.h"
+#include "core/time.h"
 #include "evaluation/report/html_report.h"
 #include "evaluation/report/pdf_report.h"
 #include "evaluation/report/round_report.h"
-#include "jobs/calibrate/calibration_figures.h"
+#include "jobs/calibrate/calibration_grade.h"
 #include "jobs/picture.h"
 #include "live/vote_frames.h"
 

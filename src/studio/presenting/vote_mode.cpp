@@ -10,7 +10,7 @@
 
 #include "core/error.h"
 #include "core/log.h"
-#include "core/utc.h"
+#include "core/time.h"
 #include "evaluation/design_codes.h"
 #include "evaluation/duel.h"
 #include "evaluation/qr_code.h"

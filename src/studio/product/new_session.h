@@ -14,7 +14,6 @@
 
 #include "gl/handles.h"
 #include "session/session.h"
-#include "studio/product/lit_share.h"
 #include "studio/product/mesh_picture.h"
 #include "studio/product/product_answers.h"
 

@@ -1,11 +1,13 @@
-// What a person says of a mesh before it becomes a product: its unit, which way is up, how large
-// the model on the bench is, and what its parts are called. Values without a window.
+// What a person says of a mesh before it becomes a product, and how much of it a projector's
+// picture reaches.
 #pragma once
 
 #include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
+
+#include <glm/vec3.hpp>
 
 #include "scene/product.h"
 
@@ -64,5 +66,23 @@ std::string problem_of(const ProductAnswers& answers);
 ProductFile product_file_of(const MeshFacts& facts,
                             const ProductAnswers& answers,
                             const std::string& name);
+
+/// A place on a mesh; all of a mesh's stand for the same area.
+struct MeshSample {
+    glm::vec3 position, normal;  ///< the normal on either side, unit
+};
+/// So many, spread evenly over the mesh's area, in the mesh's own numbers; the same every time.
+/// None of a mesh without area.
+std::vector<MeshSample> mesh_samples(const Mesh& mesh, std::size_t count = 4000);
+
+/// The share of what the projector has before it of the product, by solid angle, that lies in its
+/// picture, 0 to 1. `product` says where the mesh stands and how large; nothing hides anything.
+/// None without samples.
+std::optional<double> lit_share(const std::vector<MeshSample>& samples,
+                                const ProductFile& product,
+                                const View& projector);
+
+/// What a person reads of it: a sentence.
+std::string lit_share_text(double share);
 
 }  // namespace livery

@@ -1,6 +1,8 @@
-// Taking out of a text who somebody is: the home folder and the user's names.
+// Taking out of a text who somebody is, and the log's end as a report tells it.
 #pragma once
 
+#include <cstddef>
+#include <filesystem>
 #include <string>
 #include <utility>
 #include <vector>
@@ -21,5 +23,12 @@ PrivateWords private_words();
 
 /// The text with all of them replaced, as they are and as JSON writes them.
 std::string redacted(const std::string& text, const PrivateWords& words);
+
+/// The last `most_bytes` of `log/livery.log` in the user's folder and of those it was rotated to,
+/// oldest first, in whole lines. `with_session`: else of commands, undo and redo, which tell of the
+/// session, only the kind. Throws FileError where there is no log.
+std::string log_part(const std::filesystem::path& user_folder,
+                     bool with_session,
+                     std::size_t most_bytes = 1u << 20u);
 
 }  // namespace livery

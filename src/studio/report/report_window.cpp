@@ -13,9 +13,8 @@
 #include "core/error.h"
 #include "live/frame_pictures.h"
 #include "studio/kit/file_dialog.h"
-#include "studio/kit/open_folder.h"
+#include "studio/kit/folders.h"
 #include "studio/kit/theme.h"
-#include "studio/kit/user_folders.h"
 #include "studio/kit/widgets.h"
 #include "studio/studio.h"
 

@@ -12,9 +12,8 @@
 #include "core/utf8.h"
 #include "evaluation/ballots.h"
 #include "evaluation/closed_round.h"
-#include "jobs/calibrate/calibration_figures.h"
+#include "jobs/calibrate/calibration_folder.h"
 #include "jobs/calibrate/calibration_grade.h"
-#include "jobs/calibrate/calibration_origin.h"
 #include "jobs/file_check.h"
 #include "scene/colour_calibration.h"
 

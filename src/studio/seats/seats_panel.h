@@ -12,7 +12,7 @@
 
 #include "gl/handles.h"
 #include "live/seat_error_thread.h"
-#include "studio/kit/held.h"
+#include "studio/kit/widgets.h"
 #include "studio/seats/room_plan.h"
 
 namespace livery {

@@ -18,7 +18,6 @@
 #include "studio/product/open_session.h"
 #include "studio/projector_control.h"
 #include "studio/report/report_window.h"
-#include "studio/save_picture.h"
 #include "studio/seats/seat_maps.h"
 #include "studio/seats/seats_panel.h"
 #include "studio/window/shell.h"
@@ -135,7 +134,8 @@ void add_file_actions(std::vector<Action>& list) {
         action("new-session", "File", "New session…", {ctrl(GLFW_KEY_N)}, ask_for_product));
     list.push_back(
         action("open-session", "File", "Open session…", {ctrl(GLFW_KEY_O)}, ask_for_session));
-    list.push_back(action("import-look", "File", "Import look…", {ctrl(GLFW_KEY_I)}, ask_for_look));
+    list.push_back(
+        action("import-look", "File", "Import look…", {ctrl(GLFW_KEY_I)}, ask_for_look_file));
     list.back().starts_group = true;
     list.push_back(action(
         "export-look", "File", "Export look…", {ctrl(GLFW_KEY_E)}, ask_where_to_export_look));

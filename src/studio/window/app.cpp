@@ -15,8 +15,8 @@
 #include <imgui.h>
 #include <imgui_internal.h>
 
-#include "core/freed_memory.h"
 #include "core/log.h"
+#include "core/memory.h"
 #include "core/paths.h"
 #include "projection/desktop_watch.h"
 #include "scene/library.h"
@@ -44,7 +44,6 @@
 #include "studio/window/shell.h"
 #include "studio/window/shell_state.h"
 #include "studio/window/trace.h"
-#include "studio/window/window_icon.h"
 #include "studio/window/window_place.h"
 #include "studio/window/wiring.h"
 

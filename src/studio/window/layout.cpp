@@ -15,7 +15,7 @@
 #include "studio/kit/theme.h"
 #include "studio/nudge/nudge_panel.h"
 #include "studio/paint/library_panel.h"
-#include "studio/paint/swatch_textures.h"
+#include "studio/paint/swatches.h"
 #include "studio/presenting/presenting.h"
 #include "studio/presenting/vote_mode.h"
 #include "studio/product/open_session.h"

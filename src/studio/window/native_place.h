@@ -1,4 +1,4 @@
-// Where GLFW's window and monitors stand, and the window put where it belongs.
+// Where GLFW's window and monitors stand, the window put where it belongs, and its icon.
 #pragma once
 
 #include <array>
@@ -7,6 +7,8 @@
 #include "studio/window/app.h"
 #include "studio/window/shell.h"
 #include "studio/window/window_place.h"
+
+struct GLFWwindow;
 
 struct GLFWwindow;
 
@@ -23,5 +25,11 @@ void put_window(GLFWwindow* window, const WindowPlace& place);
 WindowPlace first_place(const Shell& shell, const DesktopOptions& options);
 /// Off the projector, when the projector was chosen or monitors came and went.
 void move_off_projector(Shell& shell, GLFWwindow* window);
+
+struct Studio;
+
+/// Read on the background thread: the module that reads pictures takes a while to load. The window
+/// must outlive the thread.
+void give_icon(Studio& studio, GLFWwindow* window);
 
 }  // namespace livery

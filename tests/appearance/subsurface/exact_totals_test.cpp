@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "appearance/subsurface/fresnel_moments.h"
+#include "appearance/subsurface/scattering_medium.h"
 #include "core/quadrature.h"
 
 namespace livery {

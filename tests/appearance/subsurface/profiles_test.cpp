@@ -7,11 +7,9 @@
 
 #include <gtest/gtest.h>
 
-#include "appearance/subsurface/beam_diffusion.h"
 #include "appearance/subsurface/media.h"
-#include "appearance/subsurface/normalized_diffusion.h"
-#include "appearance/subsurface/over_plane.h"
-#include "appearance/subsurface/p3.h"
+#include "appearance/subsurface/profile_integrals.h"
+#include "appearance/subsurface/profile_models.h"
 #include "appearance/subsurface/single_scattering.h"
 #include "appearance/subsurface/subsurface_profile.h"
 #include "core/worst_error.h"

@@ -10,10 +10,10 @@
 
 #include <gtest/gtest.h>
 
-#include "appearance/subsurface/inverse_hankel.h"
 #include "appearance/subsurface/layered_sources.h"
 #include "appearance/subsurface/media.h"
 #include "appearance/subsurface/model_errors.h"
+#include "appearance/subsurface/profile_integrals.h"
 #include "appearance/subsurface/single_scattering.h"
 
 namespace livery {

@@ -11,7 +11,7 @@
 #include "evaluation/ballots.h"
 #include "jobs/calibrate/calibration_folder.h"
 #include "jobs/synthetic_calibration.h"
-#include "studio/report/report_log.h"
+#include "studio/report/redaction.h"
 #include "support/run_program.h"
 #include "support/temporary_folder.h"
 

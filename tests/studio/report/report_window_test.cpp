@@ -9,7 +9,7 @@
 
 #include "core/paths.h"
 #include "studio/kit/file_dialog.h"
-#include "studio/kit/open_folder.h"
+#include "studio/kit/folders.h"
 #include "studio/panels_fixture.h"
 #include "support/child_process.h"
 

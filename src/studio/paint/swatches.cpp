@@ -1,0 +1,130 @@
+#include "studio/paint/swatches.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <imgui.h>
+
+#include "appearance/parameter_table.h"
+#include "gl/window.h"
+#include "studio/kit/theme.h"
+#include "studio/kit/widgets.h"
+#include "studio/paint/library_panel.h"
+#include "studio/paint/paint_parameters.h"
+#include "studio/paint/users_library.h"
+
+namespace livery {
+
+namespace {
+
+/// Enough for every paint that one sees at once, several times over.
+constexpr std::size_t kMostKept = 300;
+
+/// All that the picture depends on.
+std::string key_of(const Material& m, int size_px) {
+    return fmt::format("{} {}", size_px, fmt::join(reflectance_numbers(m), " "));
+}
+
+void draw_plain_disc(const Material& material, const ImVec2& corner, float side) {
+    ImGui::GetWindowDrawList()->AddCircleFilled({corner.x + 0.5f * side, corner.y + 0.5f * side},
+                                                0.46f * side,
+                                                screen_colour(drawn_face_lab(material)),
+                                                48);
+}
+
+}  // namespace
+
+void take_swatches(Studio& studio) {
+    LibraryPanelState& state = *studio.panels.library;
+    std::map<std::string, Image8> drawn;
+    {
+        const std::scoped_lock lock(state.inbox->mutex);
+        drawn.swap(state.inbox->drawn);
+    }
+    if (state.swatches.size() + drawn.size() > kMostKept) {
+        state.swatches.clear();
+        state.asked.clear();
+    }
+    for (const auto& [key, picture] : drawn) {
+        state.asked.erase(key);
+        if (picture.channels != 4 || picture.empty()) continue;
+        Texture2D texture(TextureShape{picture.width, picture.height, 0, 1},
+                          TexelFormat::rgba8,
+                          TexelFilter::linear);
+        texture.upload(std::span<const std::uint8_t>(picture.values));
+        state.swatches.insert_or_assign(key, std::move(texture));
+    }
+}
+
+void draw_swatch(Studio& studio, const Material& material, const ImVec2& corner, float side_px) {
+    LibraryPanelState& state = *studio.panels.library;
+    // Few sizes, so that dragging a panel's edge does not draw all of them anew.
+    const int size_px = std::clamp(static_cast<int>(std::ceil(side_px / 32.0f)) * 32, 64, 256);
+    const std::string key = key_of(material, size_px);
+    if (const auto found = state.swatches.find(key); found != state.swatches.end()) {
+        ImGui::GetWindowDrawList()->AddImage(
+            imgui_texture(found->second.name()), corner, {corner.x + side_px, corner.y + side_px});
+        return;
+    }
+    draw_plain_disc(material, corner, side_px);
+    if (!studio.previews || studio.opening || !state.asked.insert(key).second) return;
+    studio.previews->request_swatch(
+        material, size_px, [inbox = state.inbox, key](const Image8& rgba) {
+            {
+                const std::scoped_lock lock(inbox->mutex);
+                inbox->drawn[key] = rgba;
+            }
+            wake_main_thread();
+        });
+}
+
+void draw_swatch_cell(Studio& studio,
+                      const Material& paint,
+                      const std::string& distance,
+                      const ImVec2& corner,
+                      float width,
+                      bool worn,
+                      bool lit) {
+    ImDrawList* draw = ImGui::GetWindowDrawList();
+    const float side = std::floor(0.78f * width);
+    const float left = std::floor(corner.x + 0.5f * (width - side)), top = corner.y + em(0.3f);
+    const ImVec2 end{corner.x + width, corner.y + ImGui::GetItemRectSize().y};
+    const float rounding = ImGui::GetStyle().FrameRounding;
+    if (lit) draw->AddRectFilled(corner, end, ImGui::GetColorU32(colours::raised), rounding);
+    draw_swatch(studio, paint, {left, top}, side);
+    if (worn) {
+        draw->AddRect(
+            corner, end, ImGui::GetColorU32(colours::text), rounding, 0, std::max(1.5f, em(0.1f)));
+    }
+    ImGui::PushFont(small_font());
+    const float below = top + side + em(0.25f);
+    centred_lines(fitted_lines(paint.name, width - em(0.3f), 2),
+                  {corner.x, below},
+                  width,
+                  worn || lit ? colours::text : colours::dim_text);
+    if (!distance.empty()) {
+        centred_lines(
+            {distance}, {corner.x, below + 2.3f * ImGui::GetFontSize()}, width, colours::text);
+    }
+    ImGui::PopFont();
+}
+
+void paint_tooltip(const Material& paint) {
+    // Beside the column and at the bottom: hides neither swatches and their names nor the mock-up.
+    const ImGuiViewport& window = *ImGui::GetMainViewport();
+    const float bottom = window.WorkPos.y + window.WorkSize.y - em(3.0f);
+    ImGui::SetNextWindowPos(
+        {ImGui::GetWindowPos().x - em(1.0f), bottom}, ImGuiCond_Always, {1.0f, 1.0f});
+    ImGui::BeginTooltip();
+    ImGui::PushTextWrapPos(em(22.0f));
+    heading(paint.name.c_str());
+    ImGui::TextUnformatted(summary_of(paint).c_str());
+    if (!paint.provenance.empty()) dim_text(paint.provenance);
+    ImGui::PopTextWrapPos();
+    ImGui::EndTooltip();
+}
+
+}  // namespace livery
