@@ -1,5 +1,12 @@
-// Reads the lists in docs/architecture.md and holds every #include of src/ against them; names of
-// types, sizes of folders, errors that a NaN would not count in.
+// What is checked of the source as text:
+//
+// - Who may include whom: every #include "folder/file.h" of src/ against the list in
+//   docs/architecture.md, which names every folder of src/ and has no circle.
+// - Where other people's headers stay: every #include <header> against the second list there.
+// - Nightly tests: tests/README.md has a row for each, and what it says stands in by day is there.
+// - Errors: none is kept by a std::max() that a NaN leaves as it was.
+//
+// The first and the last are also tried on planted faults.
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -164,54 +171,6 @@ std::vector<std::string> day_names_of_no_test(const std::filesystem::path& sourc
     return found;
 }
 
-/// Every name that two files of src/ give to types of their own, a file's private ones too: "Name:
-/// a.cpp b.h". Members of a type have that type's name before them.
-std::vector<std::string> names_given_twice(const std::filesystem::path& source) {
-    static const std::regex declared(
-        R"(^(?:struct|class|enum class|enum) (\w+)(?: final)?(?: :[^:].*)? \{)");
-    std::map<std::string, std::set<std::string>> places;
-    for (const auto& entry : std::filesystem::recursive_directory_iterator(source / "src")) {
-        if (!is_source(entry.path())) continue;
-        std::istringstream lines(text_of(entry.path()));
-        for (std::string line; std::getline(lines, line);) {
-            std::smatch match;
-            if (!std::regex_search(line, match, declared)) continue;
-            places[match[1]].insert(
-                std::filesystem::relative(entry.path(), source / "src").generic_string());
-        }
-    }
-    std::vector<std::string> found;
-    for (const auto& [name, files] : places) {
-        if (files.size() < 2) continue;
-        std::string line = name + ":";
-        for (const auto& file : files) line += " " + file;
-        found.push_back(line);
-    }
-    return found;
-}
-
-/// Folders of src/ with more than a newcomer can look through, their subfolders apart.
-std::vector<std::string> crowded_folders(const std::filesystem::path& source) {
-    constexpr int kMostFiles = 60, kMostLines = 6000;
-    std::map<std::string, std::pair<int, std::ptrdiff_t>> sizes;
-    for (const auto& entry : std::filesystem::recursive_directory_iterator(source / "src")) {
-        if (!entry.is_regular_file()) continue;
-        auto& [files, lines] =
-            sizes[std::filesystem::relative(entry.path(), source).parent_path().generic_string()];
-        const std::string text = text_of(entry.path());
-        files += 1;
-        lines += std::count(text.begin(), text.end(), '\n');
-    }
-    std::vector<std::string> found;
-    for (const auto& [folder, size] : sizes) {
-        if (size.first > kMostFiles || size.second > kMostLines) {
-            found.push_back(folder + ": " + std::to_string(size.first) + " files, " +
-                            std::to_string(size.second) + " lines");
-        }
-    }
-    return found;
-}
-
 /// Errors that a NaN leaves as they were: std::max(worst, NaN) is `worst` (core/worst_error.h has
 /// what to write instead). By their names, some where absolute values are kept. Whole numbers are
 /// never NaN.
@@ -306,16 +265,6 @@ TEST(Layering, PlantedIncludesAreFound) {
     }
 }
 
-TEST(Layering, NoTwoTypesHaveOneName) {
-    const auto found = names_given_twice(kSource);
-    EXPECT_TRUE(found.empty()) << joined(found);
-}
-
-TEST(Layering, NoFolderIsCrowded) {
-    const auto found = crowded_folders(kSource);
-    EXPECT_TRUE(found.empty()) << joined(found);
-}
-
 TEST(Nightly, TheReadmeNamesAllThatRunsAtNight) {
     const auto tests = nightly_tests(kSource);
     EXPECT_GT(tests.size(), 5u);
@@ -347,17 +296,6 @@ TEST(Errors, PlantedOnesAreFound) {
               "std::max(\n"
               "src/core/a.cpp:3: largest = "
               "std::max(largest,\n std::abs(\n");
-}
-
-TEST(Layering, PlantedNamesAndCrowdsAreFound) {
-    const TemporaryFolder folder;
-    std::filesystem::create_directories(folder / "src/core");
-    folder.write("src/core/a.h", "struct Cell {\n};\nclass Other final : public Base {\n");
-    folder.write("src/core/b.cpp", "struct Cell {\n};\nstruct Other::State {\n");
-    folder.write("src/core/c.cpp", "enum class Other {\n" + std::string(6000, '\n'));
-    EXPECT_EQ(joined(names_given_twice(folder.path())),
-              "Cell: core/a.h core/b.cpp\nOther: core/a.h core/c.cpp\n");
-    EXPECT_EQ(joined(crowded_folders(folder.path())), "src/core: 3 files, 6007 lines\n");
 }
 
 }  // namespace
