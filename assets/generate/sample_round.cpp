@@ -15,16 +15,12 @@
 #include "core/hash.h"
 #include "core/json.h"
 #include "core/paths.h"
-#include "evaluation/ballot_tables.h"
 #include "evaluation/ballots.h"
-#include "evaluation/design_codes.h"
 #include "evaluation/presentation_order.h"
 #include "evaluation/statistics/ballot_law.h"
 
 namespace livery {
 namespace {
-
-using What = LogEntry::What;
 
 constexpr int kSeed = 15, kEvaluators = 24, kWave = 3;
 /// Ours: what the evaluators, whom there are none of, are taken to like.
@@ -61,50 +57,31 @@ void write_ballots(const std::filesystem::path& file, const std::vector<int>& co
                       std::numeric_limits<int>::max(),
                       ballots_schema());
     Transaction transaction(database);
-    record(database, {.what = What::session, .session = 1, .at = time_at(0)});
+    LogSeal end;
+    const auto add = [&](int round, int at_s, LogEntry::What what) {
+        LogEntry entry{1, round, time_at(at_s), std::move(what)};
+        append_to_log(database, end, entry);
+    };
+    add(0, 0, LogEntry::Session{});
     for (int seat = 1; seat <= kEvaluators; ++seat) {
         Hasher hasher;
         hasher.add("a seat of the sample, " + std::to_string(seat));
-        record(database,
-               {.what = What::seat,
-                .session = 1,
-                .seat = seat,
-                .at = time_at(kJoining_s * seat),
-                .text = hasher.hex() + hasher.hex(),
-                .best = 1});
+        add(0, kJoining_s * seat, LogEntry::Seat{seat, true, hasher.hex() + hasher.hex()});
     }
-    const std::string opened = time_at(kOpened_s);
-    record(
-        database,
-        {.what = What::open, .session = 1, .round = 1, .at = opened, .best = 1, .second = kSeed});
+    add(1, kOpened_s, LogEntry::Open{"", true, kSeed});
     for (std::size_t k = 0; k < kDesigns.size(); ++k) {
-        record(database,
-               {.what = What::design,
-                .session = 1,
-                .round = 1,
-                .at = opened,
-                .text = kDesigns[k],
-                .best = static_cast<int>(k),
-                .second = codes[k]});
+        add(1, kOpened_s, LogEntry::Design{static_cast<int>(k), kDesigns[k], codes[k]});
     }
-    record(database, {.what = What::voting, .session = 1, .round = 1, .at = time_at(kVoting_s)});
+    add(1, kVoting_s, LogEntry::Voting{});
     const BallotLaw law = ballot_law(kWorths, true);
     Random random(kSeed);
     const auto ballots = draw_round(law, kEvaluators, random);
     for (int seat = 1; seat <= kEvaluators; ++seat) {
-        const RankedBallot& ballot = ballots[static_cast<std::size_t>(seat - 1)];
-        record(database,
-               {.what = What::vote,
-                .session = 1,
-                .round = 1,
-                .seat = seat,
-                .at = time_at(kVoting_s + 7 * seat),
-                .best = ballot.best,
-                .second = ballot.second,
-                .least = ballot.least});
+        add(1,
+            kVoting_s + 7 * seat,
+            LogEntry::Vote{seat, ballots[static_cast<std::size_t>(seat - 1)]});
     }
-    record(database,
-           {.what = What::close, .session = 1, .round = 1, .at = time_at(kVoting_s + 240)});
+    add(1, kVoting_s + 240, LogEntry::Close{});
     transaction.commit();
 }
 

@@ -55,28 +55,14 @@ std::optional<BallotResponse> refused(const BallotRequest& request, const Server
     return std::nullopt;
 }
 
-int index_of(const Round& round, int code) {
-    const auto found = std::find(round.codes.begin(), round.codes.end(), code);
-    check_argument(found != round.codes.end(),
-                   "found look " + std::to_string(code) + ", expected one of the round's");
-    return static_cast<int>(found - round.codes.begin());
-}
-
 /// What a body says; std::invalid_argument for a bad one, which is no fault of a file of ours.
 template <typename Parse>
-auto message_in(const std::string& body, const Parse& parse) {
+auto in_body(const Parse& parse) {
     try {
-        return parse(body);
+        return parse();
     } catch (const FileError& error) {
         throw std::invalid_argument(error.what());
     }
-}
-
-VoteMessage message_of(const Round& round, const Choices& choices) {
-    const auto code = [&](int index) { return round.codes.at(static_cast<std::size_t>(index)); };
-    VoteMessage vote{round.id, code(choices.best), code(choices.second)};
-    if (choices.least) vote.least = code(*choices.least);
-    return vote;
 }
 
 }  // namespace
@@ -202,7 +188,7 @@ bool BallotService::is_join_code(const std::string& code, int session, double no
 }
 
 BallotResponse BallotService::join_by_code(const BallotRequest& request, double now_s) {
-    const std::string code = tidy_join_code(message_in(request.body, parse_join));
+    const std::string code = tidy_join_code(in_body([&] { return parse_join(request.body); }));
     if (!is_join_code(code, store_.session().value(), now_s)) {
         return problem(403, "this code is not the one that is shown now");
     }
@@ -224,58 +210,39 @@ PageState BallotService::state_for(const BallotRequest& request) {
     PageState state;
     state.seat = seat_of(request, session);
     const auto round = store_.last_round(session);
-    const bool open = round && !round->closed;
+    const bool open = round && !round->closed();
     if (state.seat == 0) {
         state.state = open ? "shut" : "join";
         return state;
     }
     if (!round) return state;
-    state.round = round->id;
+    state.round = round;
     const Turn turn = store_.turn_of(round->id, state.seat);
     if (open && turn.waves > 1) {
         state.wave = turn.wave + 1;
         state.waves = turn.waves;
     }
-    const bool votes = round->voting && turn.votes;
-    state.state = round->closed ? "locked"
-                  : votes       ? "voting"
-                  : turn.sits   ? "presenting"
-                                : "waiting";
-    if (!votes) return state;
-    if (open) {
-        // Their order says nothing: codes are random.
-        state.codes = round->codes;
-        std::sort(state.codes.begin(), state.codes.end());
-        state.asks_least = round->asks_least;
-        state.scales = round->scales;
-        for (const auto& [design, steps] : store_.ratings_of(round->id, state.seat).steps) {
-            state.ratings[round->codes.at(static_cast<std::size_t>(design))] = steps;
-        }
-    }
-    if (const auto ballot = store_.ballot_of(round->id, state.seat)) {
-        state.ballot = message_of(*round, ballot->choices);
-        state.receipt = ballot->receipt;
-    }
+    state.votes = round->voting() && turn.votes;
+    state.state = round->closed() ? "locked"
+                  : state.votes   ? "voting"
+                  : turn.sits     ? "presenting"
+                                  : "waiting";
+    if (!state.votes) return state;
+    state.answers = store_.ratings_of(round->id, state.seat);
+    state.ballot = store_.ballot_of(round->id, state.seat);
     return state;
 }
 
-Round BallotService::round_under_vote(int session, int id) {
-    const auto round = store_.last_round(session);
-    if (!round || round->id != id) {
-        throw Refused("round " + std::to_string(id) + " is not the one under vote",
-                      "look at the page again");
-    }
-    return *round;
-}
-
-BallotResponse BallotService::take_rating(const BallotRequest& request, double now_s) {
+/// What a seat sends, taken by `take`: its answer is what the page then shows.
+template <typename Take>
+BallotResponse BallotService::changed_by_seat(const BallotRequest& request,
+                                              double now_s,
+                                              const Take& take) {
     const int session = store_.session().value();
     const int seat = seat_of(request, session);
     if (seat == 0) return problem(401, "found no seat, expected to have joined");
     if (!changes_.allowed(seat, now_s)) return too_many_changes();
-    const RatingMessage rating = message_in(request.body, parse_rating);
-    const Round round = round_under_vote(session, rating.round);
-    store_.rate(round.id, seat, index_of(round, rating.look), rating.steps);
+    take(seat, store_.last_round(session));
     changes_.changed(seat, now_s);
     BallotResponse response;
     response.body = text_of(state_for(request));
@@ -283,19 +250,17 @@ BallotResponse BallotService::take_rating(const BallotRequest& request, double n
 }
 
 BallotResponse BallotService::take_vote(const BallotRequest& request, double now_s) {
-    const int session = store_.session().value();
-    const int seat = seat_of(request, session);
-    if (seat == 0) return problem(401, "found no seat, expected to have joined");
-    if (!changes_.allowed(seat, now_s)) return too_many_changes();
-    const VoteMessage vote = message_in(request.body, parse_vote);
-    const Round round = round_under_vote(session, vote.round);
-    Choices choices{index_of(round, vote.best), index_of(round, vote.second)};
-    if (vote.least) choices.least = index_of(round, *vote.least);
-    store_.vote(round.id, seat, choices);
-    changes_.changed(seat, now_s);
-    BallotResponse response;
-    response.body = text_of(state_for(request));
-    return response;
+    return changed_by_seat(request, now_s, [&](int seat, const std::optional<Round>& round) {
+        const Ballot ballot = in_body([&] { return parse_vote(request.body, round); });
+        store_.vote(round->id, seat, ballot);
+    });
+}
+
+BallotResponse BallotService::take_rating(const BallotRequest& request, double now_s) {
+    return changed_by_seat(request, now_s, [&](int seat, const std::optional<Round>& round) {
+        const auto rating = in_body([&] { return parse_rating(request.body, round); });
+        store_.rate(round->id, seat, rating.design, rating.steps);
+    });
 }
 
 }  // namespace livery

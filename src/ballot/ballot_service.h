@@ -49,10 +49,11 @@ class BallotService {
     BallotResponse join_by_token(const BallotRequest& request);
     BallotResponse join_by_code(const BallotRequest& request, double now_s);
     BallotResponse seated(const BallotRequest& request, BallotResponse response);
+    template <typename Take>
+    BallotResponse changed_by_seat(const BallotRequest& request, double now_s, const Take& take);
     BallotResponse take_vote(const BallotRequest& request, double now_s);
     BallotResponse take_rating(const BallotRequest& request, double now_s);
     bool is_join_code(const std::string& code, int session, double now_s);
-    Round round_under_vote(int session, int round);
     PageState state_for(const BallotRequest& request);
     int seat_of(const BallotRequest& request, int session);
 

@@ -252,9 +252,12 @@ void Database::check_schema(const std::vector<std::string>& schema) {
         return found ? *found : std::string();
     };
     for (const auto& row :
-         run("SELECT type, name, coalesce(sql, ''), rootpage FROM sqlite_schema")) {
+         run("SELECT type, name, coalesce(sql, ''), rootpage, tbl_name FROM sqlite_schema")) {
         const std::string type = text(row[0]), name = text(row[1]), sql = text(row[2]);
-        if (std::find(schema.begin(), schema.end(), sql) != schema.end()) continue;
+        const auto listed = [&](const std::string& what) {
+            return std::find(schema.begin(), schema.end(), what) != schema.end();
+        };
+        if (listed(sql) || (listed(text(row[4])) && type != "view")) continue;
         const auto* page = std::get_if<std::int64_t>(&row[3]);
         const bool stored = (type == "table" || type == "index") && page && *page > 0;
         const bool of_sqlite = type == "index" && sql.empty();

@@ -27,7 +27,8 @@ class Database {
     /// kind or with a user_version above `newest_version` is refused by name. What a file's own
     /// schema may run is nothing: views, virtual tables and triggers are refused, but for what
     /// `schema` lists, the statements that make such a file. Where it lists any, no other table
-    /// is taken either.
+    /// is taken either, but for those listed by their bare names, with all that belongs to them:
+    /// tables of older files, which the caller drops.
     Database(const std::filesystem::path& file,
              Mode mode,
              std::int32_t application_id,

@@ -1,14 +1,11 @@
 #include "evaluation/closed_round.h"
 
 #include <algorithm>
-#include <map>
 #include <system_error>
 #include <utility>
 
 #include "core/error.h"
 #include "core/random.h"
-#include "evaluation/ballots.h"
-#include "evaluation/csv_field.h"
 
 namespace livery {
 
@@ -18,7 +15,7 @@ Round find_round(const BallotStore& store, std::optional<int> id) {
     const std::vector<Round> rounds = store.rounds();
     const auto found = std::find_if(rounds.rbegin(), rounds.rend(), [&](const Round& round) {
         // One that was broken off before people could vote says nothing.
-        return id ? round.id == *id : round.closed && round.voting;
+        return id ? round.id == *id : round.closed() && round.voting();
     });
     if (found != rounds.rend()) return *found;
     if (id) {
@@ -32,22 +29,31 @@ Round find_round(const BallotStore& store, std::optional<int> id) {
                   "close the round, then ask for what it says");
 }
 
-ScaleAnswers no_answers(const Round& round) {
-    return {round.designs.size(), std::vector<int>(round.scales.size(), 0)};
-}
-
-std::map<int, ScaleAnswers> answers_by_seat(const BallotStore& store, const Round& round) {
-    std::map<int, ScaleAnswers> answers;
-    if (round.scales.empty()) return answers;
-    for (const CastRatings& cast : store.ratings(round.id)) {
-        ScaleAnswers& own = answers.try_emplace(cast.seat, no_answers(round)).first->second;
-        for (const auto& [design, steps] : cast.steps) {
-            for (std::size_t scale = 0; scale < steps.size(); ++scale) {
-                own.at(static_cast<std::size_t>(design))[scale] = steps[scale].value_or(0);
-            }
+std::vector<LookShowing> showings_of(const PresentationPlan& plan,
+                                     const std::vector<PresentationStep>& steps,
+                                     const std::vector<int>& codes) {
+    std::vector<LookShowing> showings;
+    int sitting = -1, shown = -1;
+    for (const PresentationStep& step : steps) {
+        const int design = design_of(plan, step.state);
+        if (design < 0) {
+            shown = -1;  // grey, white: the next look is shown anew
+            continue;
         }
+        if (step.state.sitting != sitting) {
+            const auto at = static_cast<std::size_t>(step.state.sitting);
+            showings.push_back(
+                {step.at, at < plan.seats.size() ? plan.seats[at] : std::vector<int>(), {}});
+        }
+        sitting = step.state.sitting;
+        const bool again = step.event == PresentationEvent::repeat;
+        const int place = step.state.place;
+        if (place != shown || again) {
+            showings.back().codes.push_back(codes.at(static_cast<std::size_t>(design)));
+        }
+        shown = place;
     }
-    return answers;
+    return showings;
 }
 
 }  // namespace
@@ -61,22 +67,22 @@ ClosedRound read_closed_round(const std::filesystem::path& file,
         throw FileError(file, "", "no such file", "ballots that Livery keeps");
     }
     const BallotStore store(file);
-    const Round round = find_round(store, id);
-    ClosedRound closed{round.id, round.created, round.calibration_id, round.designs, {}, false};
-    closed.scales = round.scales;
+    ClosedRound closed{find_round(store, id), file.filename().string()};
+    const Round& round = closed.round;
+    // Which refuses an open one
+    const auto cast = store.ballots(round.id);
+    closed.seats = static_cast<int>(store.seats(round.session).size());
+    closed.duel = duel_of(store, round.id);
+    if (const auto plan = store.plan_of(round.id)) {
+        closed.showings = showings_of(*plan, store.steps_of(round.id), round.codes);
+    }
     struct Evaluator {
-        RankedBallot ballot;
+        Ballot ballot;
         ScaleAnswers answers;
     };
     std::vector<Evaluator> evaluators;
-    // Which refuses an open one
-    const auto cast = store.ballots(round.id);
-    const auto ratings = answers_by_seat(store, round);
     for (const CastBallot& one : cast) {
-        const auto found = ratings.find(one.seat);
-        evaluators.push_back(
-            {{one.choices.best, one.choices.second, one.choices.least.value_or(-1)},
-             found == ratings.end() ? no_answers(round) : found->second});
+        evaluators.push_back({one.ballot, store.ratings_of(round.id, one.seat)});
     }
     // In the order of the file neighbours would stay neighbours.
     constexpr std::uint64_t stream = 3;
@@ -86,21 +92,21 @@ ClosedRound read_closed_round(const std::filesystem::path& file,
         closed.ballots.push_back(one.ballot);
         if (!round.scales.empty()) closed.answers.push_back(std::move(one.answers));
     }
-    const auto names_least = [](const RankedBallot& ballot) { return ballot.least >= 0; };
-    closed.all_name_least = closed.designs.size() > 2 && !closed.ballots.empty() &&
+    const auto names_least = [](const Ballot& ballot) { return ballot.least >= 0; };
+    closed.all_name_least = round.designs.size() > 2 && !closed.ballots.empty() &&
                             std::all_of(closed.ballots.begin(), closed.ballots.end(), names_least);
     return closed;
 }
 
-std::string ballots_csv(const ClosedRound& round, std::uint64_t seed) {
+std::string ballots_csv(const ClosedRound& closed, std::uint64_t seed) {
+    const Round& round = closed.round;
     std::string text = "# round " + std::to_string(round.id) + " of " + round.created + "\r\n";
     text += "# calibration " +
             (round.calibration_id.empty() ? std::string("none") : round.calibration_id) + "\r\n";
     text += "# order of chance, seed " + std::to_string(seed) + "\r\n";
-    const bool any_least =
-        std::any_of(round.ballots.begin(), round.ballots.end(), [](const RankedBallot& ballot) {
-            return ballot.least >= 0;
-        });
+    const bool any_least = std::any_of(closed.ballots.begin(),
+                                       closed.ballots.end(),
+                                       [](const Ballot& ballot) { return ballot.least >= 0; });
     text += any_least ? "best,second,least" : "best,second";
     for (const std::string& design : round.designs) {
         for (const SemanticScale& scale : round.scales) {
@@ -111,13 +117,13 @@ std::string ballots_csv(const ClosedRound& round, std::uint64_t seed) {
     const auto name = [&](int design) {
         return csv_field(round.designs[static_cast<std::size_t>(design)]);
     };
-    for (std::size_t k = 0; k < round.ballots.size(); ++k) {
-        const RankedBallot& ballot = round.ballots[k];
+    for (std::size_t k = 0; k < closed.ballots.size(); ++k) {
+        const Ballot& ballot = closed.ballots[k];
         text += name(ballot.best) + ',' + name(ballot.second);
         if (any_least) text += ',' + (ballot.least >= 0 ? name(ballot.least) : std::string());
-        for (std::size_t design = 0; k < round.answers.size() && design < round.designs.size();
+        for (std::size_t design = 0; k < closed.answers.size() && design < round.designs.size();
              ++design) {
-            for (const int step : round.answers[k][design]) {
+            for (const int step : closed.answers[k][design]) {
                 text += ',' + (step > 0 ? std::to_string(step) : std::string());
             }
         }

@@ -1,4 +1,5 @@
-// A round whose ballots are told: for the statistics, and to be handed on.
+// A closed round as its ballots' file has it: what the statistics need, what proves it, and what is
+// handed on.
 #pragma once
 
 #include <cstdint>
@@ -7,20 +8,23 @@
 #include <string>
 #include <vector>
 
-#include "evaluation/statistics/scale_statistics.h"
-#include "evaluation/statistics/vote_counts.h"
+#include "evaluation/ballots.h"
+#include "evaluation/duel.h"
+#include "evaluation/report/round_details.h"
 
 namespace livery {
 
 struct ClosedRound {
-    int id = 0;
-    std::string created;         ///< ISO 8601, UTC
-    std::string calibration_id;  ///< empty: uncorrected
-    std::vector<std::string> designs;
-    std::vector<RankedBallot> ballots;  ///< without who cast them, in an order of chance
-    bool all_name_least = false;        ///< only then can the statistics take it into account
-    std::vector<SemanticScale> scales = {};
+    Round round;
+    std::string file;                        ///< of the ballots: its name, without folders
+    int seats = 0;                           ///< of the session, when it was read
+    std::vector<Ballot> ballots = {};        ///< without who cast them, in an order of chance
+    bool all_name_least = false;             ///< only then can the statistics take it into account
     std::vector<ScaleAnswers> answers = {};  ///< on scales, of the same evaluator as the ballot
+    /// Of a round that was presented, by its log: what each sitting was really shown, repeats and
+    /// what was gone back to included.
+    std::vector<LookShowing> showings = {};
+    std::optional<DuelRecord> duel = {};  ///< where the round is one of its repeats
 };
 
 /// One round of a ballots file, the last closed one where no id is given; `seed` is the order's.

@@ -16,21 +16,12 @@ namespace {
 // Fitted worths of designs with the same votes differ by rounding alone.
 constexpr double kSameWorth = 1e-6;
 
-Round round_named(const BallotStore& store, int id) {
-    for (Round& round : store.rounds()) {
-        if (round.id == id) return std::move(round);
-    }
-    throw std::invalid_argument("found round " + std::to_string(id) +
-                                ", expected one of those in " + store.file().string());
-}
-
 std::array<std::string, 2> leaders_of(const BallotStore& store, const Round& round) {
-    std::vector<RankedBallot> ballots;
+    std::vector<Ballot> ballots;
     bool least = round.asks_least && round.designs.size() > 2;
     for (const CastBallot& cast : store.ballots(round.id)) {
-        ballots.push_back(
-            {cast.choices.best, cast.choices.second, cast.choices.least.value_or(-1)});
-        least = least && cast.choices.least.has_value();
+        ballots.push_back(cast.ballot);
+        least = least && cast.ballot.least >= 0;
     }
     const auto counts =
         counts_of(ballots, static_cast<int>(round.designs.size()), least && !ballots.empty());
@@ -43,7 +34,7 @@ std::array<std::string, 2> leaders_of(const BallotStore& store, const Round& rou
 
 std::array<int, 2> leading_two(const VoteCounts& counts,
                                const std::vector<std::string>& names,
-                               const std::vector<RankedBallot>* ballots) {
+                               const std::vector<Ballot>* ballots) {
     if (counts.evaluators() == 0) {
         throw Refused("nobody has voted, so no two looks lead", "vote, and lock the round first");
     }
@@ -67,7 +58,7 @@ std::array<int, 2> leading_two(const VoteCounts& counts,
 }
 
 RoundSetup next_repeat(const BallotStore& store, int id, int seed) {
-    const Round round = round_named(store, id);
+    const Round round = store.round(id);
     RoundSetup setup;
     setup.presenting = true;
     setup.calibration_id = round.calibration_id;
@@ -99,8 +90,8 @@ std::optional<DuelRecord> duel_of(const BallotStore& store, int round) {
         auto& votes = record.votes.emplace_back();
         for (const CastBallot& cast : store.ballots(series->rounds[repeat])) {
             DuelAnswers& own = answers.try_emplace(cast.seat, repeats, -1).first->second;
-            own[repeat] = cast.choices.best;
-            ++votes.at(static_cast<std::size_t>(cast.choices.best));
+            own[repeat] = cast.ballot.best;
+            ++votes.at(static_cast<std::size_t>(cast.ballot.best));
         }
     }
     for (auto& [seat, own] : answers) record.answers.push_back(std::move(own));

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "evaluation/ballot.h"
 #include "evaluation/ballots.h"
 #include "evaluation/statistics/duel_statistics.h"
-#include "evaluation/statistics/vote_counts.h"
 
 namespace livery {
 
@@ -19,7 +19,7 @@ inline constexpr int kDuelRepeats = 3;
 /// third largest worths are the same.
 std::array<int, 2> leading_two(const VoteCounts& counts,
                                const std::vector<std::string>& names,
-                               const std::vector<RankedBallot>* ballots = nullptr);
+                               const std::vector<Ballot>* ballots = nullptr);
 
 /// The next repeat of the duel of a locked round's leaders: the first one, or that of a series
 /// that is under way, which `round` may be one of. The seed goes with it: repeat 2 has `seed` + 1.

@@ -1,13 +1,13 @@
 #include "evaluation/paper_ballots.h"
 
 #include <algorithm>
+#include <array>
 #include <charconv>
 #include <set>
 #include <string_view>
 
 #include "core/error.h"
 #include "core/utf8.h"
-#include "evaluation/statistics/vote_counts.h"
 
 namespace livery {
 
@@ -125,15 +125,14 @@ class PaperReader {
             if (column == "paper") {
                 ballot.paper = paper_of(cells[k]);
             } else if (column == "least") {
-                if (!cells[k].empty()) ballot.choices.least = look_of(cells[k]);
+                if (!cells[k].empty()) ballot.ballot.least = look_of(cells[k]);
             } else {
-                (column == "best" ? ballot.choices.best : ballot.choices.second) =
-                    look_of(cells[k]);
+                (column == "best" ? ballot.ballot.best : ballot.ballot.second) = look_of(cells[k]);
             }
         }
-        const Choices& choices = ballot.choices;
-        if (choices.best == choices.second || choices.least == choices.best ||
-            choices.least == choices.second) {
+        const Ballot& looks = ballot.ballot;
+        if (looks.best == looks.second || looks.least == looks.best ||
+            looks.least == looks.second) {
             fail("one look twice", "a different look for each place");
         }
         return ballot;
@@ -165,6 +164,8 @@ class PaperReader {
     int line_ = 0;
     bool begun_ = false;
 };
+
+constexpr std::array kPlaces = {"best", "second", "least"};
 
 }  // namespace
 
@@ -203,10 +204,9 @@ std::vector<PaperBallot> parse_paper_ballots(const std::string& text,
     return PaperReader(name, round).read(text);
 }
 
-std::vector<Ballot> numbered_ballots(std::vector<PaperBallot> papers, int next) {
+std::vector<PaperBallot> numbered(std::vector<PaperBallot> papers, int next) {
     std::set<int> taken;
     for (const PaperBallot& paper : papers) taken.insert(paper.paper);
-    std::vector<Ballot> ballots;
     for (PaperBallot& paper : papers) {
         if (paper.paper == 0) {
             while (taken.contains(next)) ++next;
@@ -215,12 +215,145 @@ std::vector<Ballot> numbered_ballots(std::vector<PaperBallot> papers, int next) 
         check_argument(paper.paper <= kMostPaper,
                        "papers: found number " + std::to_string(paper.paper) +
                            ", expected at most " + std::to_string(kMostPaper));
-        ballots.push_back({paper_seat(paper.paper),
-                           paper.choices.best,
-                           paper.choices.second,
-                           paper.choices.least});
     }
-    return ballots;
+    return papers;
+}
+
+// --- typing ---
+
+PaperTyping::PaperTyping(BallotStore& store, int round)
+    : store_(store), round_(store.round(round)), paper_(next_paper(store.seats(round_.session))) {}
+
+std::string PaperTyping::help() const {
+    return std::string("Type the code of the best look, Enter, of the second best, Enter") +
+           (round_.asks_least ? ", of the least, Enter (Enter alone: none)" : "") +
+           ".\n- takes the last one back, .7 goes to paper 7, + sums up, * ends.\n";
+}
+
+std::string PaperTyping::prompt() const {
+    return paper_seat(paper_) + ", " + kPlaces[looks_.size()] + ": ";
+}
+
+std::string PaperTyping::take(const std::string& typed) {
+    std::string line = typed;
+    std::erase_if(line, [](char c) { return c == ' ' || c == '\t' || c == '\r'; });
+    if (line == "-") return take_back();
+    if (line == "+") return summary();
+    if (line == "*" || line == "q") {
+        if (!looks_.empty()) {
+            return paper_seat(paper_) +
+                   " is begun: type the rest of it, or take it back with -, then end.\n";
+        }
+        done_ = true;
+        return finish();
+    }
+    if (line.starts_with('.')) return go_to(line.substr(1));
+    if (line.empty()) {
+        if (looks_.size() == 2) return complete();
+        return "Type the code of the " + std::string(kPlaces[looks_.size()]) +
+               " look: " + codes_in_words(round_) + ".\n";
+    }
+    return take_code(line);
+}
+
+std::string PaperTyping::take_code(const std::string& text) {
+    const auto code = number_of(text);
+    const auto look = code ? look_with_code(round_, *code) : std::nullopt;
+    if (!look) {
+        return "\"" + printable(text, 20) +
+               "\" is no code of this round: " + codes_in_words(round_) + ".\n";
+    }
+    const auto before = std::find(looks_.begin(), looks_.end(), *look);
+    if (before != looks_.end()) {
+        return text + " is the " + kPlaces[static_cast<std::size_t>(before - looks_.begin())] +
+               " of this paper already: the " + kPlaces[looks_.size()] + " is another look.\n";
+    }
+    if (looks_.empty()) keep();
+    looks_.push_back(*look);
+    return looks_.size() == places() ? complete() : "";
+}
+
+std::string PaperTyping::complete() {
+    const PaperBallot ballot{paper_, {looks_[0], looks_[1], looks_.size() > 2 ? looks_[2] : -1}};
+    const std::string text = paper_seat(paper_) + ": " + words_of(looks_) +
+                             (looks_.size() < places() ? ", no least" : "") + ".\n";
+    last_ = ballot;
+    looks_.clear();
+    paper_ = std::max(next_paper(store_.seats(round_.session)), paper_ + 1);
+    return text;
+}
+
+std::string PaperTyping::take_back() {
+    if (!looks_.empty()) {
+        const std::string place = kPlaces[looks_.size() - 1];
+        const int code = round_.codes[static_cast<std::size_t>(looks_.back())];
+        looks_.pop_back();
+        return place + " " + std::to_string(code) + " is taken back.\n";
+    }
+    if (last_) {
+        paper_ = last_->paper;
+        last_.reset();
+        return paper_seat(paper_) + " is taken back: type it again, or end.\n";
+    }
+    return "Nothing can be taken back: ballots before are kept. .7 types paper 7 again, which "
+           "replaces it.\n";
+}
+
+std::string PaperTyping::go_to(const std::string& text) {
+    const auto paper = number_of(text);
+    if (!paper || *paper < 1 || *paper > kMostPaper) {
+        return "Type a point and a paper's number, 1 to " + std::to_string(kMostPaper) + ".\n";
+    }
+    if (!looks_.empty()) {
+        return paper_seat(paper_) + " is begun: type the rest of it, or take it back with -.\n";
+    }
+    keep();
+    paper_ = *paper;
+    return was_typed(paper_)
+               ? paper_seat(paper_) + " was typed before: what comes now replaces it.\n"
+               : "";
+}
+
+std::string PaperTyping::summary() const {
+    const auto typed = static_cast<int>(kept_.size()) + (last_ ? 1 : 0);
+    const auto in_all = static_cast<int>(store_.voted(round_.id).size());
+    std::string text = std::to_string(typed) + (typed == 1 ? " ballot" : " ballots") +
+                       " typed here; round " + std::to_string(round_.id) + " holds " +
+                       std::to_string(in_all);
+    if (last_) text += ", and " + paper_seat(last_->paper) + " as soon as the next is begun";
+    return text + ". What they say is told when the round is locked.\n";
+}
+
+std::string PaperTyping::finish() {
+    keep();
+    if (looks_.empty()) return "";
+    looks_.clear();
+    return paper_seat(paper_) + " was not complete and is not kept.\n";
+}
+
+void PaperTyping::keep() {
+    if (!last_) return;
+    const bool replaced = was_typed(last_->paper);
+    const CastBallot cast = store_.vote(round_.id, paper_seat(last_->paper), last_->ballot);
+    kept_.push_back({last_->paper, cast.receipt, replaced});
+    last_.reset();
+}
+
+std::string PaperTyping::words_of(const std::vector<int>& looks) const {
+    std::string text;
+    for (std::size_t k = 0; k < looks.size(); ++k) {
+        text += (k == 0 ? "" : ", ") + std::string(kPlaces[k]) + " " +
+                std::to_string(round_.codes[static_cast<std::size_t>(looks[k])]);
+    }
+    return text;
+}
+
+bool PaperTyping::was_typed(int paper) const {
+    for (const Seat& seat : store_.seats(round_.session)) {
+        if (seat.name == paper_seat(paper))
+            return store_.ballot_of(round_.id, seat.number).has_value();
+    }
+    return false;
 }
 
 }  // namespace livery

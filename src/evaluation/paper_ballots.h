@@ -1,4 +1,4 @@
-// Ballots on paper, typed in by the codes under which the looks were shown.
+// Ballots on paper, taken from a file or typed in by the codes under which the looks were shown.
 #pragma once
 
 #include <filesystem>
@@ -12,7 +12,7 @@ namespace livery {
 
 struct PaperBallot {
     int paper = 0;  ///< its number; 0: the next that is free
-    Choices choices = {};
+    Ballot ballot = {};
 };
 
 inline constexpr int kMostPaper = 9999;
@@ -38,6 +38,53 @@ std::vector<PaperBallot> parse_paper_ballots(const std::string& text,
 
 /// Gives numbers to those that have none, from `next` on, past those that others have. Throws
 /// std::invalid_argument beyond kMostPaper.
-std::vector<Ballot> numbered_ballots(std::vector<PaperBallot> papers, int next);
+std::vector<PaperBallot> numbered(std::vector<PaperBallot> papers, int next);
+
+/// Typing them one after the other, on a numeric keypad: what each line does, without knowing of a
+/// terminal. Lines: a code; an empty one (no least); `-` takes back the last code or the last
+/// ballot; `.7` goes to paper 7; `+` sums up; `*` ends. A complete ballot is kept when the next one
+/// begins, or at the end: until then it can be taken back.
+class PaperTyping {
+  public:
+    /// Throws std::invalid_argument for a round that is not there.
+    PaperTyping(BallotStore& store, int round);
+
+    /// What is asked for now: "paper 7, best: ".
+    std::string prompt() const;
+    /// What is said of a line; ends with a line break, or is empty. Throws Refused when the round
+    /// takes no votes any more.
+    std::string take(const std::string& line);
+    /// Keeps the ballot that could still be taken back, and says what was left undone.
+    std::string finish();
+    bool done() const { return done_; }
+
+    struct Kept {
+        int paper = 0;
+        std::string receipt;
+        bool replaced = false;
+    };
+    /// A paper that was typed twice stands here twice.
+    const std::vector<Kept>& kept() const { return kept_; }
+    std::string help() const;
+
+  private:
+    std::size_t places() const { return round_.asks_least ? 3 : 2; }
+    std::string take_code(const std::string& text);
+    std::string take_back();
+    std::string go_to(const std::string& text);
+    std::string summary() const;
+    std::string complete();
+    void keep();
+    std::string words_of(const std::vector<int>& looks) const;
+    bool was_typed(int paper) const;
+
+    BallotStore& store_;
+    Round round_;
+    int paper_ = 1;
+    std::vector<int> looks_;  ///< of the paper that is being typed
+    std::optional<PaperBallot> last_;
+    std::vector<Kept> kept_;
+    bool done_ = false;
+};
 
 }  // namespace livery

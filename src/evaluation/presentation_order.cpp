@@ -1,17 +1,42 @@
 #include "evaluation/presentation_order.h"
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <numeric>
+#include <random>
+#include <string>
 
 #include "core/error.h"
 #include "core/random.h"
-#include "evaluation/design_codes.h"
-#include "evaluation/statistics/vote_counts.h"
+#include "evaluation/ballot.h"
 
 namespace livery {
 
 namespace {
+
+constexpr int kMostUnlike = 26, kMostCodes = 400;
+
+std::array<int, 3> digits_of(int code) { return {code / 100, code / 10 % 10, code % 10}; }
+
+bool is_plain(int code) {
+    const auto [a, b, c] = digits_of(code);
+    if (b == 0 || c == 0 || a == b || b == c || a == c) return false;
+    if (b - a == c - b && (b - a == 1 || b - a == -1)) return false;
+    const auto turns = [](int digit) {
+        return digit == 1 || digit == 6 || digit == 8 || digit == 9;
+    };
+    return !(turns(a) && turns(b) && turns(c));
+}
+
+bool are_alike(int one, int other) {
+    auto a = digits_of(one), b = digits_of(other);
+    int same = 0;
+    for (std::size_t k = 0; k < 3; ++k) same += a[k] == b[k] ? 1 : 0;
+    std::sort(a.begin(), a.end());
+    std::sort(b.begin(), b.end());
+    return same >= 2 || a == b;
+}
 
 void check_range(const char* name, int value, int low, int high) {
     check_argument(value >= low && value <= high,
@@ -23,6 +48,33 @@ void check_range(const char* name, int value, int low, int high) {
 constexpr std::uint64_t kWaveStream = 2;
 
 }  // namespace
+
+std::vector<int> draw_codes(int designs, std::uint64_t seed, int round) {
+    check_argument(designs >= 0 && designs <= kMostCodes,
+                   "designs: found " + std::to_string(designs) + ", expected 0 to " +
+                       std::to_string(kMostCodes));
+    std::vector<int> all;
+    for (int code = 100; code < 1000; ++code) {
+        if (is_plain(code)) all.push_back(code);
+    }
+    Random random(seed, static_cast<std::uint64_t>(round));
+    std::vector<int> chosen;
+    do {
+        // Where the first ones leave no room for the others, from the beginning.
+        chosen.clear();
+        shuffle(all, random);
+        for (const int code : all) {
+            if (static_cast<int>(chosen.size()) == designs) break;
+            const bool free = std::none_of(chosen.begin(), chosen.end(), [&](int other) {
+                return designs <= kMostUnlike && are_alike(code, other);
+            });
+            if (free) chosen.push_back(code);
+        }
+    } while (static_cast<int>(chosen.size()) < designs);
+    return chosen;
+}
+
+int random_seed() { return static_cast<int>(std::random_device()() & 0x3fffffffu); }
 
 std::vector<std::vector<int>> williams_rows(int designs) {
     check_range("designs", designs, 2, kMostDesigns);
@@ -74,6 +126,44 @@ PresentationOrder presentation_order(int designs,
     }
     order.balanced = waves % rows == 0;
     return order;
+}
+
+std::vector<std::vector<int>> pass_sitting(int designs, int passes, std::uint64_t seed) {
+    check_argument(passes >= 0, "passes: found " + std::to_string(passes) + ", expected 0 or more");
+    std::vector<int> sitting;
+    int shown = 0;
+    for (const Wave& wave : presentation_order(designs, 0, 1, seed).waves) {
+        if (passes > 0 && shown++ >= passes) break;
+        sitting.insert(sitting.end(), wave.designs.begin(), wave.designs.end());
+    }
+    return {sitting};
+}
+
+std::vector<std::vector<int>> wave_sittings(int designs,
+                                            int evaluators,
+                                            int wave_size,
+                                            std::uint64_t seed) {
+    check_argument(evaluators >= 1,
+                   "evaluators: found " + std::to_string(evaluators) + ", expected 1 or more");
+    std::vector<std::vector<int>> sittings;
+    for (const Wave& wave : presentation_order(designs, evaluators, wave_size, seed).waves) {
+        sittings.push_back(wave.designs);
+    }
+    return sittings;
+}
+
+std::vector<std::vector<int>> deal_seats(std::vector<int> seats, int waves) {
+    check_argument(waves >= 1, "waves: found " + std::to_string(waves) + ", expected 1 or more");
+    std::sort(seats.begin(), seats.end());
+    std::vector<std::vector<int>> dealt(static_cast<std::size_t>(waves));
+    const auto each = seats.size() / dealt.size(), more = seats.size() % dealt.size();
+    auto next = seats.begin();
+    for (std::size_t w = 0; w < dealt.size(); ++w) {
+        const auto end = next + static_cast<std::ptrdiff_t>(each + (w < more ? 1 : 0));
+        dealt[w].assign(next, end);
+        next = end;
+    }
+    return dealt;
 }
 
 }  // namespace livery

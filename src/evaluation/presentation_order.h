@@ -1,4 +1,5 @@
-// In which order looks are shown, and under which codes.
+// The codes under which designs are shown and voted on, and the order in which they are shown: rows
+// of a Williams square, by chance and seed.
 #pragma once
 
 #include <cstdint>
@@ -6,6 +7,16 @@
 #include <vector>
 
 namespace livery {
+
+/// One a design, 123 to 987 and all different: a code says nothing about what it stands for, nor
+/// about its place. No 0, no digit twice, no run (123, 321), none that reads as a number upside
+/// down; of up to 26 no two with the same digits or that differ in one place alone. The same seed
+/// and round give the same codes on every machine, other rounds other ones, so that none means what
+/// it meant before. At most 400.
+std::vector<int> draw_codes(int designs, std::uint64_t seed, int round);
+
+/// A seed from the system: of a round whose codes nobody can guess.
+int random_seed();
 
 /// Rows of designs (from 0) in which each design stands equally often in each place, and follows
 /// each other one equally often (Williams 1949): as many rows as designs, or twice as many where
@@ -35,5 +46,21 @@ PresentationOrder presentation_order(int designs,
                                      int evaluators,
                                      int wave_size,
                                      std::uint64_t seed);
+
+/// Everybody sees `passes` rows one after the other, in one sitting; 0, and more than there are:
+/// all of them, so that each look stands equally often in each place. Throws std::invalid_argument
+/// as presentation_order() does, and for a negative number.
+std::vector<std::vector<int>> pass_sitting(int designs, int passes, std::uint64_t seed);
+
+/// Waves of at most `wave_size`, each with a row and a sitting of its own.
+std::vector<std::vector<int>> wave_sittings(int designs,
+                                            int evaluators,
+                                            int wave_size,
+                                            std::uint64_t seed);
+
+/// Seats in rising order of their numbers, shared out among the waves as evenly as they come: the
+/// first waves have one more where they do not come out even. Throws std::invalid_argument without
+/// waves.
+std::vector<std::vector<int>> deal_seats(std::vector<int> seats, int waves);
 
 }  // namespace livery

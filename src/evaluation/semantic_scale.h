@@ -14,6 +14,10 @@ struct SemanticScale {
 };
 
 inline constexpr int kScaleSteps = 7;
+/// Where one look lies on each scale: 1 (next to the low word) to 7; 0: left open.
+using ScaleSteps = std::vector<int>;
+/// One evaluator's answers, by design.
+using ScaleAnswers = std::vector<ScaleSteps>;
 inline constexpr std::size_t kMostScales = 5;
 inline constexpr std::size_t kLongestScaleWord = 24;  ///< characters
 

@@ -14,7 +14,7 @@
 #include <imgui.h>
 
 #include "core/error.h"
-#include "evaluation/design_codes.h"
+#include "evaluation/presentation_order.h"
 #include "studio/ballot_pages.h"
 #include "studio/ballot_result.h"
 #include "studio/kit/theme.h"
@@ -28,8 +28,9 @@
 namespace livery {
 
 const Round* open_round(const BallotPanelState& state) {
-    const auto found = std::find_if(
-        state.rounds.begin(), state.rounds.end(), [](const Round& round) { return !round.closed; });
+    const auto found = std::find_if(state.rounds.begin(),
+                                    state.rounds.end(),
+                                    [](const Round& round) { return !round.closed(); });
     return found == state.rounds.end() ? nullptr : &*found;
 }
 
@@ -100,11 +101,12 @@ std::vector<const SessionLook*> chosen_looks(const Studio& studio) {
 void draw_earlier_rounds(Studio& studio) {
     BallotPanelState& state = *studio.panels.ballot;
     heading("Earlier rounds");
-    const bool any = std::any_of(
-        state.rounds.begin(), state.rounds.end(), [](const Round& round) { return round.closed; });
+    const bool any = std::any_of(state.rounds.begin(), state.rounds.end(), [](const Round& round) {
+        return round.closed();
+    });
     if (!any) dim_text("None yet.");
     for (auto round = state.rounds.rbegin(); round != state.rounds.rend(); ++round) {
-        if (!round->closed) continue;
+        if (!round->closed()) continue;
         const std::string label = fmt::format("Round {} · {} · {} looks · {}",
                                               round->id,
                                               readable_time(round->created),
@@ -181,12 +183,12 @@ void draw_result(Studio& studio, const Round& round) {
                              ? std::string("shown uncorrected")
                              : "shown under calibration " + round.calibration_id.substr(0, 8)));
     if (!draw_duel(studio, round)) return draw_back_to_rounds(studio);
-    Tally tally;
+    VoteCounts tally;
     if (!attempted(state, [&] { tally = studio.ballots->tally(round.id); })) return;
     draw_verdict(studio, round);
-    draw_tally(tally, round.codes);
+    draw_tally(round, tally);
     ImGui::Spacing();
-    if (ImGui::Button("Export as CSV…")) ask_where_to_export(studio, tally, round.id);
+    if (ImGui::Button("Export as CSV…")) ask_where_to_export(studio, round, tally);
     name_last_item("ballot:export");
     ImGui::SameLine();
     if (ImGui::Button("Write the report")) write_round_report(studio, round);

@@ -20,7 +20,7 @@ struct BallotPanelState {
     std::map<int, bool> chosen_looks;  ///< by the look's number
     std::string evaluator, thanked;
     bool focus_name = false;
-    std::optional<int> best, second, least;
+    Ballot ballot;  ///< as far as it is chosen
     std::string problem;
     std::optional<int> shown_round;
     bool asking_to_close = false;

@@ -23,10 +23,10 @@ std::string design_letter(std::size_t design) {
 namespace {
 
 /// Nothing of it is drawn where it is scrolled out of sight.
-void draw_counts(const Tally& tally) {
+void draw_counts(const VoteCounts& tally) {
     // As many columns as fit share the width; more are scrolled to.
     constexpr std::size_t shared = 10, most = 62;
-    const std::size_t designs = std::min(tally.designs.size(), most);
+    const std::size_t designs = std::min(tally.best.size(), most);
     const bool scrolls = designs > shared;
     const float row_height = ImGui::GetTextLineHeight() + 2.0f * ImGui::GetStyle().CellPadding.y;
     const float height = scrolls ? (tally.least.empty() ? 3.0f : 4.0f) * row_height +
@@ -59,26 +59,25 @@ void draw_counts(const Tally& tally) {
 
 }  // namespace
 
-void draw_tally(const Tally& tally, const std::vector<int>& codes) {
+void draw_tally(const Round& round, const VoteCounts& tally) {
     draw_counts(tally);
-    for (std::size_t i = 0; i < tally.designs.size(); ++i) {
-        const std::string code = i < codes.size() ? fmt::format("  {}", codes[i]) : "";
+    for (std::size_t i = 0; i < round.designs.size(); ++i) {
         ImGui::TextWrapped(
-            "%s%s  %s", design_letter(i).c_str(), code.c_str(), tally.designs[i].c_str());
+            "%s  %d  %s", design_letter(i).c_str(), round.codes[i], round.designs[i].c_str());
     }
 }
 
-void ask_where_to_export(Studio& studio, const Tally& tally, int round) {
+void ask_where_to_export(Studio& studio, const Round& round, const VoteCounts& tally) {
     if (!studio.file_dialog) return;
     FileQuestion question;
     question.kind = FileQuestion::Kind::save;
     question.title = "Export the result";
     question.action = "Export";
     question.suffixes = {".csv"};
-    question.suggested = fmt::format("round-{}.csv", round);
-    question.then = [&studio, tally](const std::filesystem::path& file) {
+    question.suggested = fmt::format("round-{}.csv", round.id);
+    question.then = [&studio, designs = round.designs, tally](const std::filesystem::path& file) {
         try {
-            write_text_file(file, tally_csv(tally));
+            write_text_file(file, tally_csv(designs, tally));
             notify(studio,
                    {Notice::Level::info, "The result was exported.", "", file.string() + "."});
         } catch (const FileError& error) {

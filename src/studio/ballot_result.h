@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <string>
 
-#include "evaluation/tally.h"
+#include "evaluation/ballots.h"
 #include "studio/studio.h"
 
 namespace livery {
@@ -15,8 +15,8 @@ constexpr std::size_t kLetters = 26;  ///< designs beyond are numbered
 std::string design_letter(std::size_t design);
 
 /// Votes by design, then which look each letter and code is.
-void draw_tally(const Tally& tally, const std::vector<int>& codes);
+void draw_tally(const Round& round, const VoteCounts& tally);
 /// As CSV; the window tells how it went.
-void ask_where_to_export(Studio& studio, const Tally& tally, int round);
+void ask_where_to_export(Studio& studio, const Round& round, const VoteCounts& tally);
 
 }  // namespace livery

@@ -41,9 +41,7 @@ void go_to(BallotPanelState& state, Page page) {
     state.to_top = true;
     if (page == Page::vote) {
         state.evaluator.clear();
-        state.best.reset();
-        state.second.reset();
-        state.least.reset();
+        state.ballot = {};
     }
 }
 
@@ -59,28 +57,28 @@ namespace {
 
 /// Keys A, B, ... choose the best, then the second best and, where it is asked for, the least
 /// liked; Backspace takes back.
-void follow_letter_keys(BallotPanelState& state, std::size_t designs, bool asks_least) {
+void follow_letter_keys(Ballot& ballot, std::size_t designs, bool asks_least) {
     if (ImGui::GetIO().WantTextInput) return;
     for (const ImWchar typed : ImGui::GetIO().InputQueueCharacters) {
         const int lower = typed < 128 ? std::tolower(static_cast<int>(typed)) : 0;
         if (lower < 'a' || lower > 'z') continue;
         const int design = lower - 'a';
         if (static_cast<std::size_t>(design) >= designs) continue;
-        if (!state.best) {
-            state.best = design;
-        } else if (state.best != design && (!asks_least || !state.second)) {
-            state.second = design;
-        } else if (asks_least && state.best != design && state.second != design) {
-            state.least = design;
+        if (ballot.best < 0) {
+            ballot.best = design;
+        } else if (ballot.best != design && (!asks_least || ballot.second < 0)) {
+            ballot.second = design;
+        } else if (asks_least && ballot.best != design && ballot.second != design) {
+            ballot.least = design;
         }
     }
     if (was_pressed(ImGuiKey_Backspace)) {
-        (state.least ? state.least : state.second ? state.second : state.best).reset();
+        (ballot.least >= 0 ? ballot.least : ballot.second >= 0 ? ballot.second : ballot.best) = -1;
     }
 }
 
-void draw_choice(BallotPanelState& state,
-                 std::optional<int>& choice,
+void draw_choice(Ballot& ballot,
+                 int& choice,
                  std::size_t design,
                  const char* label,
                  const char* name,
@@ -90,11 +88,11 @@ void draw_choice(BallotPanelState& state,
     ImGui::PushID(name);
     if (toggle_button(label, on, width)) {
         if (on) {
-            choice.reset();
+            choice = -1;
         } else {
             // One look cannot be two of them.
-            for (std::optional<int>* other : {&state.best, &state.second, &state.least}) {
-                if (*other == index) other->reset();
+            for (int* other : {&ballot.best, &ballot.second, &ballot.least}) {
+                if (*other == index) *other = -1;
             }
             choice = index;
         }
@@ -153,7 +151,7 @@ void draw_title(const std::string& name, std::size_t design, float width) {
 }
 
 void draw_designs(Studio& studio, const Round& round) {
-    BallotPanelState& state = *studio.panels.ballot;
+    Ballot& ballot = studio.panels.ballot->ballot;
     const float gap = ImGui::GetStyle().ItemInnerSpacing.x;
     for (std::size_t i = 0; i < round.designs.size(); ++i) {
         ImGui::PushID(static_cast<int>(i));
@@ -173,12 +171,12 @@ void draw_designs(Studio& studio, const Round& round) {
         const float places = round.asks_least ? 3.0f : 2.0f;
         const float each = std::floor((width - (places - 1.0f) * gap) / places);
         const bool room = each >= button_width("Second best");
-        draw_choice(state, state.best, i, "Best", "best", each);
+        draw_choice(ballot, ballot.best, i, "Best", "best", each);
         ImGui::SameLine(0.0f, gap);
-        draw_choice(state, state.second, i, room ? "Second best" : "Second", "second", each);
+        draw_choice(ballot, ballot.second, i, room ? "Second best" : "Second", "second", each);
         if (round.asks_least) {
             ImGui::SameLine(0.0f, gap);
-            draw_choice(state, state.least, i, "Least", "least", each);
+            draw_choice(ballot, ballot.least, i, "Least", "least", each);
         }
         ImGui::EndGroup();
         ImGui::Dummy({0.0f, em(0.1f)});
@@ -221,8 +219,7 @@ void draw_closing(Studio& studio, const Round& round) {
 void confirm(Studio& studio, const Round& round) {
     BallotPanelState& state = *studio.panels.ballot;
     const int id = round.id;
-    const Ballot ballot{state.evaluator, *state.best, *state.second, state.least};
-    if (!attempted(state, [&] { studio.ballots->vote(id, ballot); })) return;
+    if (!attempted(state, [&] { studio.ballots->vote(id, state.evaluator, state.ballot); })) return;
     read_rounds(studio);
     state.thanked = trimmed(state.evaluator);
     go_to(state, Page::thanks);
@@ -243,7 +240,7 @@ void draw_vote(Studio& studio, const Round& round) {
     tooltip("One ballot a person: a second one under the same name replaces the first.");
     ImGui::Spacing();
     draw_designs(studio, round);
-    follow_letter_keys(state, round.designs.size(), round.asks_least);
+    follow_letter_keys(state.ballot, round.designs.size(), round.asks_least);
     dim_text(
         fmt::format("Keys A to {} choose the best, then the second best{}; Backspace takes "
                     "back.{}",
@@ -254,16 +251,16 @@ void draw_vote(Studio& studio, const Round& round) {
                                             "Ctrl+B, freeze Ctrl+F."));
 
     const bool named = state.evaluator.find_first_not_of(' ') != std::string::npos;
-    const bool complete = named && state.best && state.second;
+    const bool complete = named && state.ballot.best >= 0 && state.ballot.second >= 0;
     begin_disabled(!complete);
     const bool pressed = ImGui::Button("Confirm the ballot", {-FLT_MIN, em(2.4f)});
     name_last_item("ballot:confirm");
     end_disabled();
     if (!complete) {
-        dim_text(!named          ? "Missing: your name."
-                 : !state.best   ? "Missing: the best look."
-                 : !state.second ? "Missing: the second best look."
-                                 : "");
+        dim_text(!named                    ? "Missing: your name."
+                 : state.ballot.best < 0   ? "Missing: the best look."
+                 : state.ballot.second < 0 ? "Missing: the second best look."
+                                           : "");
     }
     ImGui::Spacing();
     ImGui::Separator();

@@ -11,6 +11,7 @@
 //   voted ballot_operator FILE ballots ROUND                  of a locked round: {"seat": [best,
 //   second]} ballot_operator FILE session                        a new audience
 
+#include <algorithm>
 #include <cstdio>
 #include <ctime>
 #include <exception>
@@ -37,8 +38,8 @@ Json shown(const BallotStore& store) {
     for (const Round& round : store.rounds()) {
         rounds.push_back({{"id", round.id},
                           {"codes", round.codes},
-                          {"voting", round.voting},
-                          {"closed", round.closed},
+                          {"voting", round.voting()},
+                          {"closed", round.closed()},
                           {"voted", store.voted(round.id)}});
     }
     const auto session = store.session();
@@ -122,25 +123,24 @@ Json done(BallotStore& store, const std::vector<std::string>& words) {
     }
     if (what == "ratings") {
         const int id = std::stoi(words.at(1));
-        std::vector<int> codes;
-        for (const Round& round : store.rounds()) {
-            if (round.id == id) codes = round.codes;
-        }
+        const Round round = store.round(id);
         Json ratings = Json::object();
-        for (const CastRatings& cast : store.ratings(id)) {
-            for (const auto& [design, steps] : cast.steps) {
-                const auto code = codes.at(static_cast<std::size_t>(design));
-                Json& placed = ratings[std::to_string(cast.seat)][std::to_string(code)];
-                for (const auto& step : steps) placed.push_back(step ? Json(*step) : Json(nullptr));
+        for (const auto& [seat, answers] : store.ratings(id)) {
+            for (std::size_t k = 0; k < answers.size(); ++k) {
+                const auto& steps = answers[k];
+                if (std::count(steps.begin(), steps.end(), 0) == std::ssize(steps)) continue;
+                Json& placed = ratings[std::to_string(seat)][std::to_string(round.codes[k])];
+                for (const int step : steps)
+                    placed.push_back(step > 0 ? Json(step) : Json(nullptr));
             }
         }
         return ratings;
     }
     if (what == "ballots") {
         Json ballots = Json::object();
-        for (const CastBallot& ballot : store.ballots(std::stoi(words.at(1)))) {
-            ballots[std::to_string(ballot.seat)] = {
-                ballot.choices.best, ballot.choices.second, ballot.receipt};
+        for (const CastBallot& cast : store.ballots(std::stoi(words.at(1)))) {
+            ballots[std::to_string(cast.seat)] = {
+                cast.ballot.best, cast.ballot.second, cast.receipt};
         }
         return ballots;
     }

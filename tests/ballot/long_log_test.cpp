@@ -1,14 +1,13 @@
 // A log as long as a room of phones that change their minds all day can make it.
-#include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <ctime>
 #include <string>
 
 #include <gtest/gtest.h>
 
 #include "ballot/ballot_service.h"
 #include "ballot/process_limits.h"
-#include "evaluation/ballot_tables.h"
 #include "support/temporary_folder.h"
 #include "support/thorough.h"
 
@@ -29,21 +28,19 @@ TEST(LongLog, OpensInTheServersMemory) {
         setup.designs = {"a", "b", "c", "d"};
         const int round = store.open_round(setup);
         for (int k = 0; k < kSeats; ++k) {
-            store.vote(round, {"evaluator " + std::to_string(k), 0, 1});
+            store.vote(round, "evaluator " + std::to_string(k), {0, 1});
         }
         // What a vote records, without what it checks: a minute less.
-        Database database(file, Database::Mode::existing, kApplicationId, 4, ballots_schema());
+        Database database(file, Database::Mode::existing, kApplicationId, 5, ballots_schema());
+        LogSeal end = seal_of(database);
         Transaction transaction(database);
         for (int k = 0; k < changes; ++k) {
             const int best = k / kSeats % 4;
-            record(database,
-                   {.what = LogEntry::What::vote,
-                    .session = 1,
-                    .round = round,
-                    .seat = 1 + k % kSeats,
-                    .at = "2026-01-01T00:00:00Z",
-                    .best = best,
-                    .second = (best + 1) % 4});
+            LogEntry entry{1,
+                           round,
+                           "2026-01-01T00:00:00Z",
+                           LogEntry::Vote{1 + k % kSeats, {best, (best + 1) % 4}}};
+            append_to_log(database, end, entry);
         }
         transaction.commit();
         store.close_round(round);
@@ -57,10 +54,10 @@ TEST(LongLog, OpensInTheServersMemory) {
         },
         ::testing::ExitedWithCode(0),
         "");
-    const auto begin = std::chrono::steady_clock::now();
+    const std::clock_t begin = std::clock();
     const BallotStore store(file);
-    const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
-    std::printf("%d entries open in %.2f s\n", changes, took.count());
+    const double took_s = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
+    std::printf("%d entries open in %.2f s of the processor\n", changes, took_s);
     int counted = 0;
     for (const int best : store.tally(1).best) counted += best;
     EXPECT_EQ(counted, kSeats);

@@ -10,14 +10,21 @@
 namespace livery {
 namespace {
 
+std::optional<Round> round_three() {
+    Round round;
+    round.id = 3;
+    round.codes = {412, 133, 907};
+    round.designs = {"a", "b", "c"};
+    return round;
+}
+
 TEST(BallotMessages, AVoteIsARoundAndCodes) {
-    const VoteMessage vote = parse_vote(R"({"round": 3, "best": 412, "second": 907})");
-    EXPECT_EQ(vote.round, 3);
-    EXPECT_EQ(vote.best, 412);
-    EXPECT_EQ(vote.second, 907);
-    EXPECT_FALSE(vote.least);
-    EXPECT_FALSE(parse_vote(R"({"round":3,"best":412,"second":907,"least":null})").least);
-    EXPECT_EQ(parse_vote(R"({"round":3,"best":412,"second":907,"least":133})").least, 133);
+    const auto parsed = [](const char* body) { return parse_vote(body, round_three()); };
+    EXPECT_EQ(parsed(R"({"round": 3, "best": 412, "second": 907})"), (Ballot{0, 2}));
+    EXPECT_EQ(parsed(R"({"round":3,"best":412,"second":907,"least":null})"), (Ballot{0, 2}));
+    EXPECT_EQ(parsed(R"({"round":3,"best":412,"second":907,"least":133})"), (Ballot{0, 2, 1}));
+    EXPECT_THROW(parsed(R"({"round": 4, "best": 412, "second": 907})"), Refused);
+    EXPECT_THROW(parse_vote(R"({"round": 3, "best": 412, "second": 907})", {}), Refused);
 }
 
 TEST(BallotMessages, NameWhatIsWrong) {
@@ -28,6 +35,7 @@ TEST(BallotMessages, NameWhatIsWrong) {
              {R"({"round": 3, "best": 412})", "second"},
              {R"({"round": 3, "best": "412", "second": 907})", "best"},
              {R"({"round": 3, "best": 99, "second": 907})", "best"},
+             {R"({"round": 3, "best": 413, "second": 907})", "best"},
              {R"({"round": 3, "best": 1000, "second": 907})", "best"},
              {R"({"round": 3, "best": 412.5, "second": 907})", "best"},
              {R"({"round": 0, "best": 412, "second": 907})", "round"},
@@ -36,7 +44,7 @@ TEST(BallotMessages, NameWhatIsWrong) {
              {R"({"round": 3, "best": 412, "second": 907, "least": "' OR 1=1"})", "least"},
              {std::string(1000, '['), "ballot"},
              {"{\"round\": 3, \"best\": 412, \"second\": 907, \"\xff\": 1}", "ballot"}}) {
-        EXPECT_TRUE(fails_with([&] { parse_vote(body); }, {part})) << body;
+        EXPECT_TRUE(fails_with([&] { parse_vote(body, round_three()); }, {part})) << body;
     }
     EXPECT_EQ(parse_join(R"({"code": "k7m 2pq"})"), "k7m 2pq");
     for (const char* body : {"{}", R"({"code": 7})", R"({"code": "K7M2PQ", "seat": 1})"}) {
@@ -46,10 +54,9 @@ TEST(BallotMessages, NameWhatIsWrong) {
 
 TEST(BallotMessages, ALookIsPlacedOnScales) {
     const RatingMessage rating =
-        parse_rating(R"({"round": 3, "look": 412, "steps": [4, null, 7]})");
-    EXPECT_EQ(rating.round, 3);
-    EXPECT_EQ(rating.look, 412);
-    EXPECT_EQ(rating.steps, (std::vector<std::optional<int>>{4, std::nullopt, 7}));
+        parse_rating(R"({"round": 3, "look": 133, "steps": [4, null, 7]})", round_three());
+    EXPECT_EQ(rating.design, 1);
+    EXPECT_EQ(rating.steps, (ScaleSteps{4, 0, 7}));
     // The longest there is stays far below a kilobyte.
     EXPECT_LT(
         std::string(R"({"round": 1000000, "look": 412, "steps": [null, null, null, null, null]})")
@@ -67,36 +74,27 @@ TEST(BallotMessages, ALookIsPlacedOnScales) {
              {R"({"round": 3, "look": 412, "steps": {"0": 4}})", "steps"},
              {R"({"round": 3, "look": 42, "steps": [4]})", "look"},
              {R"({"round": 3, "look": 412, "steps": [4], "seat": 2})", "seat"}}) {
-        EXPECT_TRUE(fails_with([&] { parse_rating(body); }, {part})) << body;
+        EXPECT_TRUE(fails_with([&] { parse_rating(body, round_three()); }, {part})) << body;
     }
 }
 
 TEST(BallotMessages, WordsAreTextWhateverTheySay) {
-    PageState state;
-    state.state = "voting";
-    state.seat = 1;
-    state.round = 1;
-    state.codes = {133, 412};
-    state.scales = {{"</script><b>", "\"};alert(1)//"}, {"cheap", "precious"}};
-    state.ratings[412] = {std::nullopt, 7};
+    PageState state{"voting", 1, 0, 0, round_three(), true, {{0, 7}, {0, 0}, {0, 0}}};
+    state.round->scales = {{"</script><b>", "\"};alert(1)//"}, {"cheap", "precious"}};
     const auto told = nlohmann::json::parse(text_of(state));
     EXPECT_EQ(told["scales"][0][0], "</script><b>");
     EXPECT_EQ(told["scales"][0][1], "\"};alert(1)//");
-    EXPECT_EQ(told["ratings"]["412"], (nlohmann::json{nullptr, 7}));
+    EXPECT_EQ(told["ratings"], (nlohmann::json{{"412", {nullptr, 7}}}));
 }
 
 TEST(BallotMessages, TellTheStateAndNoMore) {
     PageState state;
     state.state = "join";
     EXPECT_EQ(text_of(state), R"({"state":"join","seat":0,"round":0})");
-    state.state = "voting";
-    state.seat = 5;
-    state.round = 3;
-    state.codes = {133, 412, 907};
+    state = {"voting", 5, 0, 0, round_three(), true};
     EXPECT_EQ(text_of(state),
               R"({"state":"voting","seat":5,"round":3,"codes":[133,412,907],"least":false})");
-    state.ballot = VoteMessage{3, 412, 907};
-    state.receipt = "3fa291c0";
+    state.ballot = CastBallot{5, {0, 2}, "3fa291c0"};
     EXPECT_EQ(text_of(state),
               R"({"state":"voting","seat":5,"round":3,"codes":[133,412,907],"least":false,)"
               R"("ballot":{"round":3,"best":412,"second":907,"least":null},)"

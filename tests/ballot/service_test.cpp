@@ -186,7 +186,7 @@ TEST_F(BallotServiceTest, LooksArePlacedOnScalesAfterTheBallot) {
     EXPECT_FALSE(state(secret).contains("scales"));
     const auto kept = operators_.ratings(round);
     ASSERT_EQ(kept.size(), 1u);
-    EXPECT_EQ(kept[0].steps.at(0), (ScaleSteps{7, 1}));
+    EXPECT_EQ(kept.begin()->second.at(0), (ScaleSteps{7, 1}));
     // A round that asks nothing of the kind
     open();
     ASSERT_EQ(vote(secret, R"({"round": 2, "best": 412, "second": 133})").status, 200);
@@ -369,9 +369,9 @@ TEST_F(BallotServiceTest, SaysWhenAVoteCouldNotBeKept) {
     const std::string secret = join();
     open();
     {
-        Database other(file_, Database::Mode::existing, 0x4c765642, 4, ballots_schema());
+        Database other(file_, Database::Mode::existing, 0x4c765642, 5, ballots_schema());
         other.run(
-            "CREATE TRIGGER ballot_lost BEFORE INSERT ON ballots "
+            "CREATE TRIGGER ballot_lost BEFORE INSERT ON log "
             "BEGIN SELECT RAISE(ABORT, 'disk on fire'); END");
     }
     const auto answer = vote(secret, R"({"round": 1, "best": 907, "second": 560})");

@@ -44,7 +44,7 @@ void TallyOfARound(benchmark::State& state) {
     BallotStore store(folder.path() / "ballots.livery");
     const int round = store.open_round({"red", "silver", "ivory", "blue"}, "");
     for (int k = 0; k < 100; ++k) {
-        store.vote(round, {"evaluator " + std::to_string(k), k % 4, (k + 1) % 4});
+        store.vote(round, "evaluator " + std::to_string(k), {k % 4, (k + 1) % 4});
     }
     store.close_round(round);
     for (auto _ : state) benchmark::DoNotOptimize(store.tally(round));

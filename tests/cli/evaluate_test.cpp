@@ -154,7 +154,7 @@ TEST(Evaluate, TellsAndHandsOnARoundOfAFile) {
             {0, 1}, {1, 3}, {1, 3}, {1, 3}, {1, 3}, {1, 3}, {1, 2}, {2, 1}, {3, 1}, {3, 2}};
         int number = 0;
         for (const auto& [best, second] : votes) {
-            store.vote(round, {"evaluator " + std::to_string(++number), best, second});
+            store.vote(round, "evaluator " + std::to_string(++number), {best, second});
         }
         EXPECT_EQ(evaluate({"tally", "--ballots", file}).exit_code, 1) << "it is open";
         store.close_round(round);

@@ -19,7 +19,7 @@ std::filesystem::path closed_then_open(const TemporaryFolder& folder) {
     int number = 0;
     for (const auto& [best, second] :
          std::initializer_list<std::pair<int, int>>{{0, 1}, {0, 1}, {1, 2}, {2, 0}, {0, 2}}) {
-        store.vote(round, {"evaluator " + std::to_string(++number), best, second});
+        store.vote(round, "evaluator " + std::to_string(++number), {best, second});
     }
     store.close_round(round);
     store.open_round({"x", "y"}, "");
@@ -28,7 +28,7 @@ std::filesystem::path closed_then_open(const TemporaryFolder& folder) {
 
 std::vector<std::pair<int, int>> choices(const ClosedRound& round) {
     std::vector<std::pair<int, int>> all;
-    for (const RankedBallot& ballot : round.ballots) all.emplace_back(ballot.best, ballot.second);
+    for (const Ballot& ballot : round.ballots) all.emplace_back(ballot.best, ballot.second);
     return all;
 }
 
@@ -36,9 +36,9 @@ TEST(ClosedRound, HasItsBallotsInAnOrderOfChance) {
     const TemporaryFolder folder;
     const auto file = closed_then_open(folder);
     const ClosedRound round = read_closed_round(file, {}, 1);
-    EXPECT_EQ(round.id, 1);
-    EXPECT_EQ(round.calibration_id, "1234abcd");
-    EXPECT_EQ(round.designs.size(), 3u);
+    EXPECT_EQ(round.round.id, 1);
+    EXPECT_EQ(round.round.calibration_id, "1234abcd");
+    EXPECT_EQ(round.round.designs.size(), 3u);
     EXPECT_EQ(counts_of(round.ballots, 3, false).best, (std::vector<int>{3, 1, 1}));
     EXPECT_EQ(choices(read_closed_round(file, 1, 1)), choices(round));
     // Some of ten seeds give another order, all the same ballots.
@@ -91,8 +91,8 @@ TEST(ClosedRound, KeepsTheLeastOnesAndSaysWhetherAllNamedOne) {
     setup.asks_least = true;
     for (const bool all : {true, false}) {
         const int round = store.open_round(setup);
-        store.vote(round, {"one", 0, 1, 2});
-        store.vote(round, {"two", 2, 1, all ? std::optional(0) : std::nullopt});
+        store.vote(round, "one", {0, 1, 2});
+        store.vote(round, "two", {2, 1, all ? 0 : -1});
         store.close_round(round);
         const ClosedRound closed = read_closed_round(file, round, 1);
         EXPECT_EQ(closed.all_name_least, all);

@@ -1,11 +1,11 @@
-#include "evaluation/design_codes.h"
-
 #include <algorithm>
 #include <set>
 #include <stdexcept>
 #include <string>
 
 #include <gtest/gtest.h>
+
+#include "evaluation/presentation_order.h"
 
 namespace livery {
 namespace {

@@ -12,7 +12,6 @@
 #include <unistd.h>
 
 #include "core/random.h"
-#include "evaluation/ballot_file.h"
 #include "evaluation/ballots.h"
 #include "support/temporary_folder.h"
 
@@ -27,7 +26,7 @@ namespace {
     try {
         BallotStore store(file);
         for (int number = first;; ++number) {
-            store.vote(round, {"voter " + std::to_string(number), number % 4, (number + 1) % 4});
+            store.vote(round, "voter " + std::to_string(number), {number % 4, (number + 1) % 4});
             if (::write(confirmed, &number, sizeof number) != sizeof number) ::_exit(3);
         }
     } catch (...) {
@@ -70,11 +69,11 @@ TEST(KilledVoter, NoConfirmedVoteIsLost) {
         }
         ::close(pipe[0]);
 
-        const BallotStore store(file);  // checks the log against the ballots
+        const BallotStore store(file);  // checks the log
         std::set<int> found;
-        for (const auto& row :
-             raw_ballots(file).run("SELECT name FROM ballots JOIN seats USING (session, seat)")) {
-            found.insert(std::stoi(std::get<std::string>(row[0]).substr(6)));
+        const auto seats = store.seats(1);
+        for (const int seat : store.voted(round)) {
+            found.insert(std::stoi(seats.at(static_cast<std::size_t>(seat) - 1).name.substr(6)));
         }
         for (const int voter : confirmed) EXPECT_TRUE(found.contains(voter)) << voter;
         // At most the one that was on its way.

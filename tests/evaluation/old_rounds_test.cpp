@@ -1,7 +1,6 @@
 // Rounds that an older Livery held: presented to phones and typed in, a duel, one on paper.
 
 #include <filesystem>
-#include <map>
 #include <optional>
 #include <string>
 #include <utility>
@@ -9,9 +8,10 @@
 
 #include <gtest/gtest.h>
 
-#include "evaluation/ballots.h"
+#include "evaluation/ballot_file.h"
 #include "evaluation/duel.h"
 #include "evaluation/report/round_report.h"
+#include "support/file_error.h"
 #include "support/old_files.h"
 #include "support/temporary_folder.h"
 
@@ -29,10 +29,10 @@ std::filesystem::path old_ballots(const TemporaryFolder& folder) {
 }
 
 /// By seat.
-std::vector<std::pair<int, Choices>> votes(const BallotStore& store, int round) {
-    std::vector<std::pair<int, Choices>> all;
+std::vector<std::pair<int, Ballot>> votes(const BallotStore& store, int round) {
+    std::vector<std::pair<int, Ballot>> all;
     for (const CastBallot& ballot : store.ballots(round)) {
-        all.emplace_back(ballot.seat, ballot.choices);
+        all.emplace_back(ballot.seat, ballot.ballot);
     }
     return all;
 }
@@ -49,34 +49,31 @@ TEST(OldRounds, HoldTheirLooksVotesAndAnswers) {
     EXPECT_EQ(round.calibration_id, testing::kOldCalibrationId);
     EXPECT_EQ(round.seed, 7);
     EXPECT_TRUE(round.asks_least);
-    EXPECT_TRUE(round.closed);
+    EXPECT_TRUE(round.closed());
     EXPECT_EQ(round.scales,
               (std::vector<SemanticScale>{{"cheap", "precious"}, {"calm", "lively"}}));
 
     EXPECT_EQ(votes(store, 1),
-              (std::vector<std::pair<int, Choices>>{
+              (std::vector<std::pair<int, Ballot>>{
                   {1, {0, 1}}, {2, {0, 2}}, {3, {1, 0}}, {4, {1, 0, 2}}}));
-    const Tally tally = store.tally(1);
+    const VoteCounts tally = store.tally(1);
     EXPECT_EQ(tally.best, (std::vector<int>{2, 2, 0, 0, 0}));
     EXPECT_EQ(tally.second, (std::vector<int>{2, 1, 1, 0, 0}));
     EXPECT_EQ(tally.least, (std::vector<int>{0, 0, 1, 0, 0}));
     // Seat 1 took its second answer back.
     const auto ratings = store.ratings(1);
     ASSERT_EQ(ratings.size(), 2u);
-    EXPECT_EQ(ratings[0].seat, 1);
-    EXPECT_EQ(ratings[0].steps, (std::map<int, ScaleSteps>{{0, {7, std::nullopt}}}));
-    EXPECT_EQ(ratings[1].seat, 3);
-    EXPECT_EQ(ratings[1].steps, (std::map<int, ScaleSteps>{{1, {1, 4}}}));
+    EXPECT_EQ(ratings.at(1).at(0), (ScaleSteps{7, 0}));
+    EXPECT_EQ(ratings.at(3).at(1), (ScaleSteps{1, 4}));
     // The ballot that seat 2 changed is in the log too.
     const auto log = store.log();
     EXPECT_EQ(log.size(), 128u);
-    std::vector<Choices> seat_2;
+    std::vector<Ballot> seat_2;
     for (const LogEntry& entry : log) {
-        if (entry.what == LogEntry::What::vote && entry.round == 1 && entry.seat == 2) {
-            seat_2.push_back({entry.best, entry.second});
-        }
+        const auto* vote = std::get_if<LogEntry::Vote>(&entry.what);
+        if (vote && entry.round == 1 && vote->seat == 2) seat_2.push_back(vote->ballot);
     }
-    EXPECT_EQ(seat_2, (std::vector<Choices>{{2, 1}, {0, 2}}));
+    EXPECT_EQ(seat_2, (std::vector<Ballot>{{2, 1}, {0, 2}}));
     std::vector<std::string> names;
     for (const Seat& seat : store.seats(1)) names.push_back(seat.name);
     EXPECT_EQ(names, (std::vector<std::string>{"", "", "", "Bo", "paper 1", "paper 2"}));
@@ -123,7 +120,7 @@ TEST(OldRounds, HoldTheDuelAndThePapers) {
     EXPECT_EQ(papers.designs, (std::vector<std::string>{"red", "silver", "ivory"}));
     EXPECT_EQ(papers.codes, (std::vector<int>{481, 376, 912}));
     EXPECT_EQ(papers.calibration_id, "");
-    EXPECT_EQ(votes(store, 5), (std::vector<std::pair<int, Choices>>{{5, {2, 1}}, {6, {1, 2, 0}}}));
+    EXPECT_EQ(votes(store, 5), (std::vector<std::pair<int, Ballot>>{{5, {2, 1}}, {6, {1, 2, 0}}}));
 }
 
 TEST(OldRounds, AreReportedWithWhatStandsBesideThem) {
@@ -132,8 +129,8 @@ TEST(OldRounds, AreReportedWithWhatStandsBesideThem) {
     const RoundReportSource source = round_report_source(file, 1, 1);
     ASSERT_TRUE(source.record);
     EXPECT_EQ(source.record->seats, 6);
-    EXPECT_EQ(source.record->voting_at, "2026-11-27T22:00:00Z");
-    EXPECT_EQ(source.record->locked_at, "2026-11-27T22:00:18Z");
+    EXPECT_EQ(source.record->round.voting_at, "2026-11-27T22:00:00Z");
+    EXPECT_EQ(source.record->round.closed_at, "2026-11-27T22:00:18Z");
     ASSERT_EQ(source.record->showings.size(), 1u);
     EXPECT_EQ(source.record->showings[0].codes,
               (std::vector<int>{738, 587, 536, 879, 651, 587, 738, 879, 536, 651}));
@@ -165,14 +162,52 @@ TEST(OldRounds, StayAsTheyWereWhenTheFileGoesOn) {
         const int round = store.open_round({"a", "b"}, "");
         EXPECT_EQ(round, 6);
         // Whose name it was in round 1, and a phone that joined then.
-        EXPECT_EQ(store.vote(round, Ballot{"bO", 1, 0}).seat, 4);
-        store.vote(round, 2, Choices{0, 1});
+        EXPECT_EQ(store.vote(round, "bO", {1, 0}).seat, 4);
+        store.vote(round, 2, {0, 1});
         store.close_round(round);
     }
     const BallotStore store(file);
     EXPECT_EQ(store.tally(6).best, (std::vector<int>{1, 1}));
     EXPECT_EQ(store.tally(1).best, (std::vector<int>{2, 2, 0, 0, 0}));
     EXPECT_EQ(store.log().at(entries - 1).hash, last);
+}
+
+TEST(OldRounds, ThatWereAlteredAreRefusedAndStayAsTheyAre) {
+    const auto statements = [](Database& raw) {
+        return raw.run("SELECT count(*) FROM sqlite_schema").at(0);
+    };
+    for (const auto& [statement, part] : std::vector<std::pair<const char*, const char*>>{
+             {"UPDATE log SET best = 1, second = 0 WHERE id = 37", "log entry 37"},
+             {"DELETE FROM log WHERE id = 37", "log entry 37"},
+             {"DELETE FROM log WHERE id > 127", "log"},
+             {"DROP TABLE rounds", "rounds"}}) {
+        const TemporaryFolder folder;
+        const auto file = old_ballots(folder);
+        Database raw = raw_ballots(file);
+        for (const char* event : {"UPDATE", "DELETE"}) {
+            raw.run(std::string("DROP TRIGGER log_without_") + event);
+        }
+        raw.run(statement);
+        const auto before = statements(raw);
+        EXPECT_TRUE(fails_with([&] { BallotStore{file}; }, {"ballots.sqlite", part})) << statement;
+        EXPECT_EQ(raw.version(), 4) << statement;
+        EXPECT_EQ(statements(raw), before) << statement;
+    }
+}
+
+TEST(OldRounds, AreKeptOnceAfterwards) {
+    const TemporaryFolder folder;
+    const auto file = old_ballots(folder);
+    const auto log = [&] { return raw_ballots(file).run("SELECT * FROM log ORDER BY id"); };
+    const auto before = log();
+    { const BallotStore store(file); }
+    EXPECT_EQ(log(), before);
+    Database raw = raw_ballots(file);
+    EXPECT_EQ(raw.version(), 5);
+    EXPECT_EQ(raw.run("SELECT name FROM sqlite_schema WHERE type = 'table' ORDER BY name"),
+              (std::vector<std::vector<DatabaseValue>>{{"invitations"}, {"log"}, {"seal"}}));
+    EXPECT_EQ(raw.run("SELECT count(*) FROM invitations"),
+              (std::vector<std::vector<DatabaseValue>>{{std::int64_t{1}}}));
 }
 
 }  // namespace

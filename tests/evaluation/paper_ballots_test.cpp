@@ -6,7 +6,6 @@
 
 #include <gtest/gtest.h>
 
-#include "evaluation/paper_typing.h"
 #include "support/message_of.h"
 #include "support/temporary_folder.h"
 
@@ -30,15 +29,15 @@ TEST(PaperBallots, AreReadInEveryUsualShape) {
                              "\xef\xbb\xbfsecond,best\n376,481\n481,912\n"}) {
         const auto ballots = parse_paper_ballots(text, "votes.csv", some_round(false));
         ASSERT_EQ(ballots.size(), 2u) << text;
-        EXPECT_EQ(ballots[0].choices, (Choices{0, 1})) << text;
-        EXPECT_EQ(ballots[1].choices, (Choices{2, 0})) << text;
+        EXPECT_EQ(ballots[0].ballot, (Ballot{0, 1})) << text;
+        EXPECT_EQ(ballots[1].ballot, (Ballot{2, 0})) << text;
         EXPECT_EQ(ballots[0].paper, 0);
     }
     const auto least =
         parse_paper_ballots("481,376,912\n376,912,\n912,481\n", "votes.csv", some_round(true));
-    EXPECT_EQ(least[0].choices, (Choices{0, 1, 2}));
-    EXPECT_EQ(least[1].choices, (Choices{1, 2}));
-    EXPECT_EQ(least[2].choices, (Choices{2, 0}));
+    EXPECT_EQ(least[0].ballot, (Ballot{0, 1, 2}));
+    EXPECT_EQ(least[1].ballot, (Ballot{1, 2}));
+    EXPECT_EQ(least[2].ballot, (Ballot{2, 0}));
     const auto numbered =
         parse_paper_ballots("paper,best,second\n7,481,376\n3,912,481\n", "v", some_round(false));
     EXPECT_EQ(numbered[0].paper, 7);
@@ -76,13 +75,11 @@ TEST(PaperBallots, BadLinesAreRefusedByNumber) {
 
 TEST(PaperBallots, GetNumbersThatAreFree) {
     const std::vector<PaperBallot> papers = {{0, {0, 1}}, {5, {0, 1}}, {0, {1, 0}}};
-    const auto ballots = numbered_ballots(papers, 4);
-    EXPECT_EQ(ballots[0].evaluator, "paper 4");
-    EXPECT_EQ(ballots[1].evaluator, "paper 5");
-    EXPECT_EQ(ballots[2].evaluator, "paper 6");
+    const auto ballots = numbered(papers, 4);
+    for (int k = 0; k < 3; ++k) EXPECT_EQ(ballots[static_cast<std::size_t>(k)].paper, 4 + k);
     EXPECT_EQ(next_paper({}), 1);
     EXPECT_EQ(next_paper({{1, "paper 9"}, {2, ""}, {3, "paper plane"}, {4, "Eve"}}), 10);
-    EXPECT_NE(message_of([&] { numbered_ballots(papers, 9999); }).find("10000"), std::string::npos);
+    EXPECT_NE(message_of([&] { numbered(papers, 9999); }).find("10000"), std::string::npos);
 }
 
 class PaperTypingTest : public ::testing::Test {
@@ -132,7 +129,7 @@ TEST_F(PaperTypingTest, TakesBackACodeOrTheLastBallotAndNoMore) {
     EXPECT_NE(typed(typing, {"-"}).find("Nothing can be taken back"), std::string::npos);
     EXPECT_EQ(typed(typing, {"376", "481", ""}), "paper 1: best 376, second 481, no least.\n");
     EXPECT_EQ(typing.finish(), "");
-    EXPECT_EQ(store_.ballot_of(round, 1)->choices, (Choices{1, 0}));
+    EXPECT_EQ(store_.ballot_of(round, 1)->ballot, (Ballot{1, 0}));
 }
 
 TEST_F(PaperTypingTest, ReplacesAnEarlierPaper) {
@@ -146,7 +143,7 @@ TEST_F(PaperTypingTest, ReplacesAnEarlierPaper) {
     ASSERT_EQ(typing.kept().size(), 3u);
     EXPECT_TRUE(typing.kept()[2].replaced);
     EXPECT_EQ(store_.voted(round).size(), 2u);
-    EXPECT_EQ(store_.ballot_of(round, 1)->choices, (Choices{2, 1}));
+    EXPECT_EQ(store_.ballot_of(round, 1)->ballot, (Ballot{2, 1}));
 }
 
 TEST_F(PaperTypingTest, SaysWhatIsWrongAndGoesOn) {
@@ -176,16 +173,16 @@ TEST_F(PaperTypingTest, FindsARoundThatIsLockedMeanwhile) {
     typed(typing, {"481", "376"});
     store_.close_round(round);
     EXPECT_NE(message_of([&] { typing.take("912"); }).find("too late"), std::string::npos);
-    EXPECT_NE(message_of([&] { PaperTyping(store_, 9); }).find("no round 9"), std::string::npos);
+    EXPECT_NE(message_of([&] { PaperTyping(store_, 9); }).find("round 9"), std::string::npos);
 }
 
 TEST_F(PaperTypingTest, ManyBallotsAreOneTransaction) {
     const int round = opened(false);
-    const std::vector<Ballot> bad = {{"paper 1", 0, 1}, {"paper 2", 1, 2}, {"paper 3", 1, 1}};
+    const NamedBallots bad = {{"paper 1", {0, 1}}, {"paper 2", {1, 2}}, {"paper 3", {1, 1}}};
     EXPECT_NE(message_of([&] { store_.vote(round, bad); }).find("paper 3"), std::string::npos);
     EXPECT_TRUE(store_.voted(round).empty());
     EXPECT_TRUE(store_.seats(1).empty());
-    const auto cast = store_.vote(round, std::vector<Ballot>{bad[0], bad[1], {"paper 1", 2, 1}});
+    const auto cast = store_.vote(round, NamedBallots{bad[0], bad[1], {"paper 1", {2, 1}}});
     EXPECT_EQ(cast.size(), 3u);
     EXPECT_EQ(store_.voted(round).size(), 2u);
     EXPECT_EQ(cast[2].receipt.size(), 8u);

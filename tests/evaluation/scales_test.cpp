@@ -4,14 +4,10 @@
 #include <gtest/gtest.h>
 
 #include "core/error.h"
-#include "evaluation/ballot_file.h"
-#include "evaluation/ballot_log.h"
-#include "evaluation/ballot_tables.h"
 #include "evaluation/closed_round.h"
 #include "evaluation/report/html_report.h"
 #include "evaluation/report/round_report.h"
 #include "evaluation/semantic_scale.h"
-#include "support/file_error.h"
 #include "support/temporary_folder.h"
 
 namespace livery {
@@ -58,11 +54,11 @@ class Ratings : public ::testing::Test {
         setup.scales = {{"cheap", "precious"}, {"cold", "warm"}};
         round_ = store_.open_round(setup);
         store_.vote(round_, 1, {0, 1});
-        store_.rate(round_, 1, 0, {2, std::nullopt});
+        store_.rate(round_, 1, 0, {2, 0});
         store_.rate(round_, 1, 1, {7, 4});
         store_.vote(round_, 2, {1, 0});
         store_.rate(round_, 2, 1, {6, 5});
-        store_.rate(round_, 2, 1, {std::nullopt, 3});
+        store_.rate(round_, 2, 1, {0, 3});
     }
     TemporaryFolder folder_;
     std::filesystem::path file_ = folder_ / "ballots.sqlite";
@@ -73,9 +69,9 @@ class Ratings : public ::testing::Test {
 TEST_F(Ratings, AreKeptWithTheBallotAndChangeUntilTheLock) {
     BallotStore again(file_);
     EXPECT_EQ(again.open_round()->scales.size(), 2u);
-    EXPECT_EQ(again.ratings_of(round_, 1).steps.at(0), (ScaleSteps{2, std::nullopt}));
-    EXPECT_EQ(again.ratings_of(round_, 2).steps.at(1), (ScaleSteps{std::nullopt, 3}));
-    EXPECT_TRUE(again.ratings_of(round_, 3).steps.empty());
+    EXPECT_EQ(again.ratings_of(round_, 1).at(0), (ScaleSteps{2, 0}));
+    EXPECT_EQ(again.ratings_of(round_, 2).at(1), (ScaleSteps{0, 3}));
+    EXPECT_EQ(again.ratings_of(round_, 3), (ScaleAnswers{{0, 0}, {0, 0}}));
     const std::size_t entries = again.log().size();
     again.rate(round_, 1, 1, {7, 4});
     EXPECT_EQ(again.log().size(), entries) << "nothing changed";
@@ -90,7 +86,7 @@ TEST_F(Ratings, AreKeptWithTheBallotAndChangeUntilTheLock) {
                                                 again.rate(round_, 1, 0, {8, 1});
                                             },
                                             [&] {
-                                                again.rate(round_, 1, 0, {0, 1});
+                                                again.rate(round_, 1, 0, {-1, 1});
                                             }}) {
         EXPECT_THROW(wrong(), std::invalid_argument);
     }
@@ -150,35 +146,6 @@ TEST_F(Ratings, TheReportHasThemAndTheDuelAsText) {
     EXPECT_EQ(duel.find("<b>red"), std::string::npos);
     EXPECT_EQ(html_of(round_report(round_report_source(file_, round_, 1))).find("The duel"),
               std::string::npos);
-}
-
-TEST_F(Ratings, TheTablesAndTheLogGuardThem) {
-    {
-        auto raw = raw_ballots(file_);
-        raw.run("PRAGMA foreign_keys = ON");
-        for (const char* statement : {"DELETE FROM ratings",
-                                      "UPDATE ratings SET step = 8",
-                                      "UPDATE ratings SET scale = 4",
-                                      "INSERT INTO ratings VALUES (1, 1, 3, 0, 0, 4, 't', 1)",
-                                      "INSERT INTO scales VALUES (1, 5, 'a', 'b')",
-                                      "INSERT INTO scales VALUES (1, 2, 'a', 'a')"}) {
-            EXPECT_TRUE(fails_with([&] { raw.run(statement); }, {"ballots.sqlite"})) << statement;
-        }
-    }
-    EXPECT_NO_THROW(BallotStore{file_});
-    for (const auto& [there, back] : std::vector<std::pair<std::string, std::string>>{
-             {"UPDATE ratings SET step = 1 WHERE seat = 1 AND design = 1 AND scale = 0",
-              "UPDATE ratings SET step = 7 WHERE seat = 1 AND design = 1 AND scale = 0"},
-             {"UPDATE scales SET low = 'dear' WHERE position = 0",
-              "UPDATE scales SET low = 'cheap' WHERE position = 0"}}) {
-        raw_ballots(file_).run(there);
-        EXPECT_TRUE(fails_with([&] { BallotStore{file_}; }, {"not that of the log"})) << there;
-        raw_ballots(file_).run(back);
-        EXPECT_NO_THROW(BallotStore{file_});
-    }
-    store_.close_round(round_);
-    auto raw = raw_ballots(file_);
-    EXPECT_TRUE(fails_with([&] { raw.run("UPDATE ratings SET step = 1"); }, {"is closed"}));
 }
 
 }  // namespace

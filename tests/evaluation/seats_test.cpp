@@ -85,7 +85,7 @@ TEST(Seats, VoteWhenTheLooksHaveBeenShownAndUntilTheRoundIsLocked) {
     BallotStore store(file);
     const int session = store.open_session(), seat = store.join(session, "aa", 9);
     const int round = store.open_round(four(true, true));
-    EXPECT_FALSE(store.last_round(session).value().voting);
+    EXPECT_FALSE(store.last_round(session).value().voting());
     EXPECT_EQ(refusal([&] {
                   store.vote(round, seat, {0, 1});
               }),
@@ -100,7 +100,7 @@ TEST(Seats, VoteWhenTheLooksHaveBeenShownAndUntilTheRoundIsLocked) {
     EXPECT_EQ(store.vote(round, seat, {0, 1, 3}).receipt, first.receipt);
     const CastBallot second = store.vote(round, seat, {2, 1});
     EXPECT_NE(second.receipt, first.receipt);
-    EXPECT_EQ(store.ballot_of(round, seat).value().choices, (Choices{2, 1}));
+    EXPECT_EQ(store.ballot_of(round, seat).value().ballot, (Ballot{2, 1}));
     EXPECT_EQ(store.voted(round), std::vector<int>{seat});
     EXPECT_NE(refusal([&] { store.ballots(round); }), "");
     {
@@ -112,7 +112,7 @@ TEST(Seats, VoteWhenTheLooksHaveBeenShownAndUntilTheRoundIsLocked) {
             (std::vector<std::vector<DatabaseValue>>{{std::int64_t{1}}}));
     }
     // A ballot on paper, typed in beside.
-    store.vote(round, {"paper 7", 2, 0, 1});
+    store.vote(round, "paper 7", {2, 0, 1});
     store.close_round(round);
     EXPECT_EQ(refusal([&] {
                   store.vote(round, seat, {0, 1});
@@ -120,8 +120,8 @@ TEST(Seats, VoteWhenTheLooksHaveBeenShownAndUntilTheRoundIsLocked) {
               "round 1 is closed, so the ballot of seat 1 is too late");
     const auto ballots = store.ballots(round);
     ASSERT_EQ(ballots.size(), 2u);
-    EXPECT_EQ(ballots[1].choices, (Choices{2, 0, 1}));
-    const Tally tally = store.tally(round);
+    EXPECT_EQ(ballots[1].ballot, (Ballot{2, 0, 1}));
+    const VoteCounts tally = store.tally(round);
     EXPECT_EQ(tally.best, (std::vector<int>{0, 0, 2, 0}));
     EXPECT_EQ(tally.second, (std::vector<int>{1, 1, 0, 0}));
     EXPECT_EQ(tally.least, (std::vector<int>{0, 1, 0, 0}));
@@ -134,10 +134,10 @@ TEST(Seats, RefuseWhatMakesNoSense) {
     const int session = store.open_session(), seat = store.join(session, "aa", 9);
     const int round = store.open_round(four());
     for (const auto& [choices, part] :
-         std::vector<std::pair<Choices, std::string>>{{{1, 1}, "as best and as second best"},
-                                                      {{0, 4}, "found design 4, expected 0 to 3"},
-                                                      {{-1, 0}, "found design -1"},
-                                                      {{0, 1, 2}, "round 1 does not ask for it"}}) {
+         std::vector<std::pair<Ballot, std::string>>{{{1, 1}, "as best and as second best"},
+                                                     {{0, 4}, "found design 4, expected 0 to 3"},
+                                                     {{-1, 0}, "found design -1"},
+                                                     {{0, 1, 2}, "round 1 does not ask for it"}}) {
         try {
             store.vote(round, seat, choices);
             ADD_FAILURE() << part;

@@ -38,28 +38,37 @@ LIVERY_FUZZ(text) {
         parse_join(rest);
     } catch (const FileError&) {
     }
-    PageState state;
+    Round round;
+    round.id = 1;
+    round.codes = {481, 376, 912};
+    round.designs = {"red", "silver", "sand"};
+    PageState state{"voting", 1, 0, 0, round, true};
     try {
-        const RatingMessage rating = parse_rating(rest);
+        const RatingMessage rating = parse_rating(rest, round);
+        fuzz::require(rating.design >= 0 && rating.design < 3, "a look of the round");
         fuzz::require(!rating.steps.empty() && rating.steps.size() <= kMostScales,
                       "a step a scale");
-        for (const auto& step : rating.steps) {
-            fuzz::require(!step || (*step >= 1 && *step <= kScaleSteps), "a step is 1 to 7");
+        for (const int step : rating.steps) {
+            fuzz::require(step >= 0 && step <= kScaleSteps, "a step is 1 to 7, or open");
         }
-        state.ratings[rating.look] = rating.steps;
+        state.answers = {rating.steps};
     } catch (const FileError&) {
+    } catch (const Refused&) {
     }
     // Whatever the words are, the page gets them as they are, as text of JSON.
-    state.scales = {{first.substr(0, 40), "b"}};
+    state.round->scales = {{first.substr(0, 40), "b"}};
     try {
         parse_json(text_of(state), "answer");
     } catch (const FileError&) {
         fuzz::require(false, "an answer is JSON, whatever the words are");
     }
-    const VoteMessage vote = parse_vote(rest);
-    for (const int code : {vote.best, vote.second, vote.least.value_or(100)}) {
-        fuzz::require(code >= 100 && code <= 999, "a code has three digits");
+    try {
+        const Ballot ballot = parse_vote(rest, round);
+        for (const int look : {ballot.best, ballot.second, std::max(ballot.least, 0)}) {
+            fuzz::require(look >= 0 && look < 3, "a look of the round");
+        }
+        state.ballot = CastBallot{1, ballot, "00000000"};
+        fuzz::require(!text_of(state).empty(), "a vote can be told");
+    } catch (const Refused&) {
     }
-    state.ballot = vote;
-    fuzz::require(!text_of(state).empty(), "a vote can be told");
 }

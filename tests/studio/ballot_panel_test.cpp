@@ -32,11 +32,11 @@ TEST_F(Panels, ABallotIsFilledByTheLettersThatItShows) {
     };
     type('2');  // shows a look on the mock-up, and chooses nothing here
     type('c');  // no design of this round
-    EXPECT_FALSE(state.best);
+    EXPECT_EQ(state.ballot, Ballot{});
     type('b');
     type('A');
-    EXPECT_EQ(state.best, 1);
-    EXPECT_EQ(state.second, 0);
+    EXPECT_EQ(state.ballot.best, 1);
+    EXPECT_EQ(state.ballot.second, 0);
     // Enter without a name asks for it.
     press(studio, draw_ballot, ImGuiKey_Enter);
     EXPECT_EQ(state.page, BallotPanelState::Page::vote);
@@ -44,7 +44,7 @@ TEST_F(Panels, ABallotIsFilledByTheLettersThatItShows) {
     EXPECT_TRUE(ImGui::GetIO().WantTextInput);
     for (const char letter : std::string("Bo")) type(letter);
     EXPECT_EQ(state.evaluator, "Bo");
-    EXPECT_EQ(state.best, 1) << "letters of a name choose nothing";
+    EXPECT_EQ(state.ballot.best, 1) << "letters of a name choose nothing";
     press(studio, draw_ballot, ImGuiKey_Enter);
     EXPECT_EQ(state.page, BallotPanelState::Page::vote) << "the field is left, nothing more";
     press(studio, draw_ballot, ImGuiKey_Enter);
@@ -115,7 +115,7 @@ TEST_F(Panels, ADuelIsOfferedAfterBallotsAlone) {
     studio.ballots = std::make_unique<BallotStore>(home_ / "ballots.sqlite");
     Round round;
     round.id = studio.ballots->open_round({"red", "blue"}, "");
-    round.closed = round.voting = true;
+    round.voting_at = round.closed_at = "2026-11-27T22:00:00Z";
     static Round shown;
     const DrawPanel draw = [](Studio& its) { draw_duel(its, shown); };
     shown = round;

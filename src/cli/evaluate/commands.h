@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "cli/command.h"
-#include "evaluation/statistics/vote_counts.h"
+#include "evaluation/ballot.h"
 
 namespace livery {
 

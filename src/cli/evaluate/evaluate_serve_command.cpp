@@ -17,8 +17,8 @@
 #include "core/error.h"
 #include "evaluation/ballot_process.h"
 #include "evaluation/ballots.h"
-#include "evaluation/design_codes.h"
 #include "evaluation/duel.h"
+#include "evaluation/presentation_order.h"
 #include "evaluation/qr_code.h"
 
 namespace livery {
@@ -125,7 +125,7 @@ class ServeSession {
         }
         const std::size_t seats = store_.seats(session).size();
         const auto round = store_.open_round();
-        const std::string words = round && round->voting
+        const std::string words = round && round->voting()
                                       ? fmt::format("{} of {} have voted\n", round->ballots, seats)
                                       : fmt::format("{} have joined\n", seats);
         if (words != last_words_ && (seats > 0 || !last_words_.empty())) say(words);
@@ -145,7 +145,7 @@ class ServeSession {
         if (const auto series = store_.series_under_way()) return series->id;
         const auto rounds = store_.rounds();
         const auto found = std::find_if(rounds.rbegin(), rounds.rend(), [&](const Round& round) {
-            return round.closed && round.voting && !store_.series_of(round.id);
+            return round.closed() && round.voting() && !store_.series_of(round.id);
         });
         if (found == rounds.rend()) {
             throw Refused("no round in " + store_.file().string() + " is locked, so no looks lead",
@@ -172,8 +172,8 @@ class ServeSession {
         }
         const auto round = store_.open_round();
         if (!round) return "Enter: present the looks, and let nobody else in.\n";
-        return round->voting ? "Enter: lock the round and count.\n"
-                             : "Enter: the looks have been shown, votes count.\n";
+        return round->voting() ? "Enter: lock the round and count.\n"
+                               : "Enter: the looks have been shown, votes count.\n";
     }
 
     void go_on() {
@@ -186,7 +186,7 @@ class ServeSession {
             for (std::size_t k = 0; k < opened.designs.size(); ++k) {
                 say(fmt::format("{}  {}\n", opened.codes[k], opened.designs[k]));
             }
-        } else if (!round->voting) {
+        } else if (!round->voting()) {
             store_.start_voting(round->id);
         } else {
             store_.close_round(round->id);
@@ -213,7 +213,7 @@ class ServeSession {
     /// Of repeats nothing is told before the last one.
     void tell(int round) {
         const auto series = store_.series_of(round);
-        if (!series) return say(tally_csv(store_.tally(round)));
+        if (!series) return say(tally_csv(store_.round(round).designs, store_.tally(round)));
         if (!series->over) return say("Its counts are told with those of the last repeat.\n");
         duel_told_ = duel_of(store_, round);
         say(text_of(*duel_told_));
@@ -232,7 +232,7 @@ class ServeSession {
         for (const Round& round : store_.rounds()) {
             if (!locked_.contains(round.id)) continue;
             if (const auto series = store_.series_of(round.id); series && !series->over) continue;
-            const Tally tally = store_.tally(round.id);
+            const VoteCounts tally = store_.tally(round.id);
             Json json = {{"id", round.id},
                          {"seed", round.seed},
                          {"designs", round.designs},

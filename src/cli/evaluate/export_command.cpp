@@ -18,15 +18,16 @@ struct ExportArguments {
     int round = 0;
 };
 
-Json json_of(const ClosedRound& round, int seed) {
+Json json_of(const ClosedRound& closed, int seed) {
+    const Round& round = closed.round;
     Json ballots = Json::array();
-    for (std::size_t k = 0; k < round.ballots.size(); ++k) {
-        const RankedBallot& ballot = round.ballots[k];
+    for (std::size_t k = 0; k < closed.ballots.size(); ++k) {
+        const Ballot& ballot = closed.ballots[k];
         ballots.push_back({{"best", ballot.best}, {"second", ballot.second}});
         if (ballot.least >= 0) ballots.back()["least"] = ballot.least;
         if (round.scales.empty()) continue;
         Json& answers = ballots.back()["steps"] = Json::array();
-        for (const auto& steps : round.answers[k]) {
+        for (const auto& steps : closed.answers[k]) {
             Json& placed = answers.emplace_back(Json::array());
             for (const int step : steps) placed.push_back(step > 0 ? Json(step) : Json(nullptr));
         }
@@ -67,20 +68,20 @@ Command evaluate_export_command() {
         check_argument(csv || out.extension() == ".json",
                        "--out: found \"" + arguments->out + "\", expected a name in .csv or .json");
         const auto seed = static_cast<std::uint64_t>(common.seed);
-        const ClosedRound round =
+        const ClosedRound closed =
             read_closed_round(arguments->ballots, round_option(arguments->round), seed);
         if (csv) {
-            write_text_file(out, ballots_csv(round, seed));
+            write_text_file(out, ballots_csv(closed, seed));
         } else {
-            write_json_file(out, json_of(round, common.seed));
+            write_json_file(out, json_of(closed, common.seed));
         }
         Outcome outcome;
         outcome.figures = {{"file", arguments->out},
-                           {"round", round.id},
-                           {"ballots", round.ballots.size()},
+                           {"round", closed.round.id},
+                           {"ballots", closed.ballots.size()},
                            {"seed", common.seed}};
         outcome.text = fmt::format(
-            "{}: {} ballots of round {}\n", arguments->out, round.ballots.size(), round.id);
+            "{}: {} ballots of round {}\n", arguments->out, closed.ballots.size(), closed.round.id);
         return outcome;
     };
     return command;

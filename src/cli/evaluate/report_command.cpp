@@ -75,10 +75,12 @@ RoundReportSource report_source(const ReportArguments& arguments, VoteSource sou
         const int round = source.record->round.id;
         if (!arguments.details.empty()) {
             // One that was asked for must be there; the one beside the ballots may be.
-            report.details = parse_round_details(
-                read_text_file(arguments.details), arguments.details, round, source.record->codes);
+            report.details = parse_round_details(read_text_file(arguments.details),
+                                                 arguments.details,
+                                                 round,
+                                                 source.record->round.codes);
         } else {
-            report.details = read_round_details(source.details, round, source.record->codes);
+            report.details = read_round_details(source.details, round, source.record->round.codes);
         }
         if (!arguments.calibration.empty()) {
             report.calibration =

@@ -10,8 +10,8 @@
 #include "cli/evaluate/typed_lines.h"
 #include "core/error.h"
 #include "core/paths.h"
-#include "evaluation/design_codes.h"
-#include "evaluation/paper_typing.h"
+#include "evaluation/paper_ballots.h"
+#include "evaluation/presentation_order.h"
 
 namespace livery {
 
@@ -64,11 +64,11 @@ class VoteSession {
             throw Refused("no round in " + arguments_.ballots + " is open",
                           "open one in the window, or here with --designs A,B,C");
         }
-        if (round.closed) {
+        if (round.closed()) {
             throw Refused(fmt::format("round {} is closed", round.id),
                           "open a new round and vote there");
         }
-        if (!round.voting) {
+        if (!round.voting()) {
             throw Refused(fmt::format("round {} is still presented", round.id),
                           "type ballots in when all looks have been shown");
         }
@@ -159,16 +159,19 @@ class VoteSession {
         } else {
             text = read_text_file(name);
         }
-        const auto papers = parse_paper_ballots(text, name, round_);
+        const auto read = parse_paper_ballots(text, name, round_);
         open_planned();
         const auto seats = store_.seats(round_.session);
-        const auto ballots = numbered_ballots(papers, next_paper(seats));
+        const auto papers = numbered(read, next_paper(seats));
+        NamedBallots ballots;
         std::vector<bool> replaced;
-        for (const Ballot& ballot : ballots) replaced.push_back(has_voted(seats, ballot.evaluator));
+        for (const PaperBallot& paper : papers) {
+            ballots.emplace_back(paper_seat(paper.paper), paper.ballot);
+            replaced.push_back(has_voted(seats, ballots.back().first));
+        }
         const auto cast = store_.vote(round_.id, ballots);
         for (std::size_t k = 0; k < cast.size(); ++k) {
-            const std::string number = ballots[k].evaluator.substr(paper_seat(0).size() - 1);
-            add(std::stoi(number), cast[k].receipt, replaced[k]);
+            add(papers[k].paper, cast[k].receipt, replaced[k]);
         }
     }
 

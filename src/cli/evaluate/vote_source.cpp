@@ -60,12 +60,12 @@ void check_one_source(const VoteSourceArguments& arguments) {
     check_argument(!arguments.second.empty(), "--second: found no counts, expected them");
 }
 
-VoteSource source_of_record(RoundRecord record, std::uint64_t seed) {
+VoteSource source_of_record(ClosedRound record, std::uint64_t seed) {
     VoteSource source;
-    const ClosedRound& round = record.round;
+    const Round& round = record.round;
     source.names = round.designs;
-    source.statistics = round_statistics(round, seed);
-    source.scales = scale_statistics(round.answers, round.scales, round.designs, seed);
+    source.statistics = round_statistics(record, seed);
+    source.scales = scale_statistics(record.answers, round.scales, round.designs, seed);
     source.record = std::move(record);
     return source;
 }
@@ -91,15 +91,15 @@ VoteSource read_vote_source(const VoteSourceArguments& arguments, std::uint64_t 
     check_one_source(arguments);
     if (arguments.sample) {
         const SampleCopy copy;
-        RoundRecord record = read_round_record(copy.file(), {}, seed);
+        ClosedRound record = read_closed_round(copy.file(), {}, seed);
         const int round = record.round.id;
         VoteSource source = source_of_record(std::move(record), seed);
         source.details = round_details_file(shipped_path(kSample), round);
         return source;
     }
     if (!arguments.ballots.empty()) {
-        RoundRecord record =
-            read_round_record(arguments.ballots, round_option(arguments.round), seed);
+        ClosedRound record =
+            read_closed_round(arguments.ballots, round_option(arguments.round), seed);
         const int round = record.round.id;
         VoteSource source = source_of_record(std::move(record), seed);
         source.details = round_details_file(arguments.ballots, round);

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "cli/command.h"
-#include "evaluation/report/round_record.h"
+#include "evaluation/closed_round.h"
 #include "evaluation/statistics/vote_statistics.h"
 
 namespace livery {
@@ -26,13 +26,13 @@ struct VoteSource {
     std::vector<std::string> names;
     VoteStatistics statistics;
     ScaleStatistics scales;             ///< empty where the round asks for none
-    std::optional<RoundRecord> record;  ///< nothing: typed counts
+    std::optional<ClosedRound> record;  ///< nothing: typed counts
     /// Where what is known beside the ballots may stand; empty for typed counts.
     std::filesystem::path details;
 };
 
 /// Throws std::invalid_argument for options that do not go together or counts that cannot be, and
-/// as read_round_record().
+/// as read_closed_round().
 VoteSource read_vote_source(const VoteSourceArguments& arguments, std::uint64_t seed);
 
 }  // namespace livery

@@ -87,7 +87,7 @@ class ReportBuilder {
                                                  : source_.details.question;
         text += source_.details.question.ends_with('?') ? " " : ". ";
         const bool least =
-            source_.record ? source_.record->asks_least : statistics_.counts.has_least();
+            source_.record ? source_.record->round.asks_least : statistics_.counts.has_least();
         text += fmt::format("Each evaluator named one best and one second best look{}, ",
                             !least                       ? ""
                             : source_.record.has_value() ? ", and could name the least liked"
@@ -248,10 +248,10 @@ class ReportBuilder {
     std::string label(int design) const { return rows_.labels[static_cast<std::size_t>(design)]; }
 
     const LookDetails* look_of(std::size_t design) const {
-        if (!source_.record || design >= source_.record->codes.size()) return nullptr;
+        if (!source_.record || design >= source_.record->round.codes.size()) return nullptr;
         const auto& looks = source_.details.looks;
         const auto found = std::find_if(looks.begin(), looks.end(), [&](const LookDetails& look) {
-            return look.code == source_.record->codes[design];
+            return look.code == source_.record->round.codes[design];
         });
         return found == looks.end() ? nullptr : &*found;
     }
@@ -312,26 +312,27 @@ std::vector<VoteStatistics::Power> power_curve(const VoteStatistics& statistics,
     return curve;
 }
 
-VoteStatistics round_statistics(const ClosedRound& round, std::uint64_t seed) {
+VoteStatistics round_statistics(const ClosedRound& closed, std::uint64_t seed) {
+    const std::vector<std::string>& designs = closed.round.designs;
     return vote_statistics(
-        counts_of(round.ballots, static_cast<int>(round.designs.size()), round.all_name_least),
-        round.designs,
+        counts_of(closed.ballots, static_cast<int>(designs.size()), closed.all_name_least),
+        designs,
         seed,
-        &round.ballots);
+        &closed.ballots);
 }
 
 RoundReportSource round_report_source(const std::filesystem::path& ballots,
                                       std::optional<int> id,
                                       std::uint64_t seed) {
-    RoundRecord record = read_round_record(ballots, id, seed);
-    const ClosedRound& round = record.round;
+    ClosedRound closed = read_closed_round(ballots, id, seed);
+    const Round& round = closed.round;
     RoundReportSource source;
     source.names = round.designs;
-    source.statistics = round_statistics(round, seed);
-    source.scales = scale_statistics(round.answers, round.scales, round.designs, seed);
+    source.statistics = round_statistics(closed, seed);
+    source.scales = scale_statistics(closed.answers, round.scales, round.designs, seed);
     source.details =
-        read_round_details(round_details_file(ballots, round.id), round.id, record.codes);
-    source.record = std::move(record);
+        read_round_details(round_details_file(ballots, round.id), round.id, round.codes);
+    source.record = std::move(closed);
     return source;
 }
 

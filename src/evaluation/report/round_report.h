@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
+#include "evaluation/closed_round.h"
 #include "evaluation/report/report_document.h"
 #include "evaluation/report/round_details.h"
-#include "evaluation/report/round_record.h"
 #include "evaluation/report/vote_charts.h"
 #include "evaluation/statistics/scale_statistics.h"
 #include "evaluation/statistics/vote_statistics.h"
@@ -21,7 +21,7 @@ struct RoundReportSource {
     std::vector<std::string> names;  ///< of the designs
     VoteStatistics statistics;
     ScaleStatistics scales = {};             ///< empty where the round asks for none
-    std::optional<RoundRecord> record = {};  ///< nothing: counts that were typed in
+    std::optional<ClosedRound> record = {};  ///< nothing: counts that were typed in
     RoundDetails details = {};
     /// Figures of the calibration that the round was shown under, as read from its folder.
     std::vector<std::pair<std::string, std::string>> calibration = {};
@@ -30,10 +30,10 @@ struct RoundReportSource {
 };
 
 /// What its ballots say; of those that name a least one only where all do.
-VoteStatistics round_statistics(const ClosedRound& round, std::uint64_t seed);
+VoteStatistics round_statistics(const ClosedRound& closed, std::uint64_t seed);
 
 /// Of a round that is closed, with what stands beside its ballots; who it is for adds the rest.
-/// Throws as read_round_record() and read_round_details().
+/// Throws as read_closed_round() and read_round_details().
 RoundReportSource round_report_source(const std::filesystem::path& ballots,
                                       std::optional<int> round,
                                       std::uint64_t seed);

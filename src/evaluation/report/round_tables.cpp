@@ -210,8 +210,9 @@ ReportTable designs_table(const RoundReportSource& source, const ChartRows& rows
         {{"Design", false}, {"Code"}, {"Within reach"}, {"CIEDE2000, median"}, {"95th percentile"}},
         {}};
     for (std::size_t k = 0; k < source.names.size(); ++k) {
-        const int code =
-            source.record && k < source.record->codes.size() ? source.record->codes[k] : 0;
+        const int code = source.record && k < source.record->round.codes.size()
+                             ? source.record->round.codes[k]
+                             : 0;
         LookReachability reach;
         for (const LookDetails& look : source.details.looks) {
             if (code != 0 && look.code == code && look.reachability) reach = *look.reachability;
@@ -269,8 +270,9 @@ ReportTable seats_table(const RoundReportSource& source, const ChartRows& rows) 
         }
         for (const int design : rows.order) {
             const auto k = static_cast<std::size_t>(design);
-            const int code =
-                source.record && k < source.record->codes.size() ? source.record->codes[k] : 0;
+            const int code = source.record && k < source.record->round.codes.size()
+                                 ? source.record->round.codes[k]
+                                 : 0;
             const auto miss = std::find_if(seat.looks.begin(),
                                            seat.looks.end(),
                                            [&](const SeatMiss& one) { return one.code == code; });
@@ -384,21 +386,21 @@ ReportTable record_table(const RoundReportSource& source) {
         table.rows.push_back({what, value});
     };
     if (source.record) {
-        const RoundRecord& record = *source.record;
+        const ClosedRound& record = *source.record;
         add("File of ballots", record.file);
-        add("Round", fmt::format("{}, of session {}", record.round.id, record.session));
+        add("Round", fmt::format("{}, of session {}", record.round.id, record.round.session));
         add("Opened", record.round.created);
-        add("Votes from", recorded(record.voting_at));
-        add("Locked", recorded(record.locked_at));
+        add("Votes from", recorded(record.round.voting_at));
+        add("Locked", recorded(record.round.closed_at));
         add("Seats of the session", std::to_string(record.seats));
-        add("Ballots", std::to_string(record.round.ballots.size()));
-        add("Seed of the codes", std::to_string(record.codes_seed));
+        add("Ballots", std::to_string(record.ballots.size()));
+        add("Seed of the codes", std::to_string(record.round.seed));
         add("Hash of the log",
-            record.log_hash.empty()
+            record.round.lock.hash.empty()
                 ? kNotRecorded
                 : fmt::format("{}, of entry {}, which locked the round: over it and all before it",
-                              record.log_hash,
-                              record.log_entry));
+                              record.round.lock.hash,
+                              record.round.lock.entry));
     } else {
         add("Ballots", "counts that were typed in: no file, no log");
     }

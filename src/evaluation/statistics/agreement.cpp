@@ -33,10 +33,9 @@ std::optional<double> krippendorff_alpha(const std::vector<std::vector<double>>&
     return 1.0 - observed / expected;
 }
 
-std::vector<std::vector<double>> ranks_given(const std::vector<RankedBallot>& ballots,
-                                             int designs) {
+std::vector<std::vector<double>> ranks_given(const std::vector<Ballot>& ballots, int designs) {
     std::vector<std::vector<double>> ranks(static_cast<std::size_t>(designs));
-    for (const RankedBallot& ballot : ballots) {
+    for (const Ballot& ballot : ballots) {
         if (ballot.best < 0) continue;
         const double above = ballot.second < 0 ? 1.0 : 2.0;
         const double below = ballot.least < 0 ? designs : designs - 1.0;

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "evaluation/statistics/vote_counts.h"
+#include "evaluation/ballot.h"
 
 namespace livery {
 
@@ -16,7 +16,7 @@ std::optional<double> krippendorff_alpha(const std::vector<std::vector<double>>&
 /// The mid-ranks that ballots give each design, [design][...]: with no second best named the others
 /// share their places, a ballot without a best gives none. Ranks of complete ballots make alpha the
 /// same on an interval as on an ordinal scale.
-std::vector<std::vector<double>> ranks_given(const std::vector<RankedBallot>& ballots, int designs);
+std::vector<std::vector<double>> ranks_given(const std::vector<Ballot>& ballots, int designs);
 /// The same from the counts of complete ballots.
 std::vector<std::vector<double>> ranks_given(const VoteCounts& counts);
 

@@ -65,8 +65,8 @@ std::size_t draw_ballot(const BallotLaw& law, Random& random) {
     return ballot;
 }
 
-std::vector<RankedBallot> draw_round(const BallotLaw& law, int evaluators, Random& random) {
-    std::vector<RankedBallot> round;
+std::vector<Ballot> draw_round(const BallotLaw& law, int evaluators, Random& random) {
+    std::vector<Ballot> round;
     for (int n = 0; n < evaluators; ++n) round.push_back(law.ballots[draw_ballot(law, random)]);
     return round;
 }

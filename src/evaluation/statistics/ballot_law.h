@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/random.h"
-#include "evaluation/statistics/vote_counts.h"
+#include "evaluation/ballot.h"
 
 namespace livery {
 
@@ -14,7 +14,7 @@ namespace livery {
 struct BallotLaw {
     int designs = 0;
     bool has_least = false;
-    std::vector<RankedBallot> ballots;
+    std::vector<Ballot> ballots;
     std::vector<double> probabilities;  ///< they add up to 1
     std::vector<double> cumulative;     ///< up to and with each
     std::vector<std::size_t> guide;     ///< where in `cumulative` each 256th of the sum begins
@@ -26,7 +26,7 @@ BallotLaw ballot_law(const std::vector<double>& worths, bool has_least);
 
 /// The number of a ballot.
 std::size_t draw_ballot(const BallotLaw& law, Random& random);
-std::vector<RankedBallot> draw_round(const BallotLaw& law, int evaluators, Random& random);
+std::vector<Ballot> draw_round(const BallotLaw& law, int evaluators, Random& random);
 
 /// What `evaluators` ballots have in the mean.
 struct ExpectedVotes {

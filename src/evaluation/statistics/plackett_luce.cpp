@@ -124,7 +124,7 @@ bool needs_ghost(const VoteCounts& counts) {
     return named_best < 2;
 }
 
-LuceData luce_data(const VoteCounts& counts, const std::vector<RankedBallot>* ballots) {
+LuceData luce_data(const VoteCounts& counts, const std::vector<Ballot>* ballots) {
     LuceData data;
     data.best.assign(counts.best.begin(), counts.best.end());
     data.second.assign(counts.second.begin(), counts.second.end());
@@ -137,7 +137,7 @@ LuceData luce_data(const VoteCounts& counts, const std::vector<RankedBallot>* ba
     }
     const std::size_t designs = counts.best.size();
     data.pairs.assign(designs * designs, 0.0);
-    for (const RankedBallot& ballot : *ballots) {
+    for (const Ballot& ballot : *ballots) {
         data.pairs[static_cast<std::size_t>(ballot.best) * designs +
                    static_cast<std::size_t>(ballot.second)] += 1.0;
     }

@@ -4,8 +4,8 @@
 #include <optional>
 #include <vector>
 
+#include "evaluation/ballot.h"
 #include "evaluation/statistics/ballot_law.h"
-#include "evaluation/statistics/vote_counts.h"
 
 namespace livery {
 
@@ -23,7 +23,7 @@ inline constexpr double kGhost = 0.5;
 
 /// With the pairs that the counts make likely (expected_pairs()) or, where they are known, with
 /// those of the ballots. With the ghost where it is needed.
-LuceData luce_data(const VoteCounts& counts, const std::vector<RankedBallot>* ballots = nullptr);
+LuceData luce_data(const VoteCounts& counts, const std::vector<Ballot>* ballots = nullptr);
 LuceData luce_data(const ExpectedVotes& votes);
 
 /// Without it the likelihood has no maximum: a design has no vote, or one has all for best, so that

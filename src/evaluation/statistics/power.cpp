@@ -11,8 +11,8 @@ namespace livery {
 namespace {
 
 double drawn_deviance(const BallotLaw& law, int evaluators, int a, int b, Random& random) {
-    const std::vector<RankedBallot> round = draw_round(law, evaluators, random);
-    const VoteCounts counts = count_drawn(round, law.designs, law.has_least);
+    const std::vector<Ballot> round = draw_round(law, evaluators, random);
+    const VoteCounts counts = count_ballots(round, law.designs, law.has_least);
     const LuceData data = luce_data(counts, &round);
     return deviance(data, fit_luce(data), {a, b, 0.0});
 }

@@ -107,7 +107,7 @@ void draw(RankSumNull& null, std::uint64_t seed) {
     const PlaceScores scores = place_scores(null.designs, null.has_least);
     const auto designs = static_cast<std::size_t>(null.designs);
     std::vector<std::vector<int>> choices;
-    for (const RankedBallot& ballot :
+    for (const Ballot& ballot :
          ballot_law(std::vector<double>(designs, 1.0), null.has_least).ballots) {
         std::vector<int> gains(designs, scores.other);
         gains[static_cast<std::size_t>(ballot.best)] = scores.best;

@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "evaluation/statistics/vote_counts.h"
+#include "evaluation/ballot.h"
 
 namespace livery {
 

@@ -11,9 +11,6 @@
 
 namespace livery {
 
-/// One evaluator's steps, [design][scale] from 1 to 7; 0: no answer.
-using ScaleAnswers = std::vector<std::vector<int>>;
-
 struct LookOnScale {
     int answers = 0;
     double mean = 0.0;  ///< of the steps; none without answers

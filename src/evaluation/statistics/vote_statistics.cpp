@@ -51,7 +51,7 @@ void add_power(VoteStatistics& statistics, const BallotLaw& law) {
 VoteStatistics vote_statistics(const VoteCounts& counts,
                                const std::vector<std::string>& names,
                                std::uint64_t seed,
-                               const std::vector<RankedBallot>* ballots,
+                               const std::vector<Ballot>* ballots,
                                std::size_t power_rounds) {
     check_counts(counts);
     check_argument(names.size() == counts.best.size(),

@@ -62,7 +62,7 @@ struct VoteStatistics {
 VoteStatistics vote_statistics(const VoteCounts& counts,
                                const std::vector<std::string>& names,
                                std::uint64_t seed,
-                               const std::vector<RankedBallot>* ballots = nullptr,
+                               const std::vector<Ballot>* ballots = nullptr,
                                std::size_t power_rounds = 4000);
 
 /// "(a)", "(b)", ... as the paper calls them.

@@ -55,7 +55,7 @@ void add(WinProbabilities& wins,
     }
 }
 
-std::vector<int> scores_of(const RankedBallot& ballot, int designs, const PlaceScores& places) {
+std::vector<int> scores_of(const Ballot& ballot, int designs, const PlaceScores& places) {
     std::vector<int> scores(static_cast<std::size_t>(designs), places.other);
     scores[static_cast<std::size_t>(ballot.best)] = places.best;
     scores[static_cast<std::size_t>(ballot.second)] = places.second;
@@ -78,7 +78,7 @@ void convolve(WinProbabilities& wins,
     for (std::size_t i = 0; i + 1 < designs; ++i, cells *= width) strides[i] = cells;
     std::vector<std::size_t> steps;
     int total = 0;
-    for (const RankedBallot& ballot : law.ballots) {
+    for (const Ballot& ballot : law.ballots) {
         const std::vector<int> scores = scores_of(ballot, law.designs, places);
         total = std::accumulate(scores.begin(), scores.end(), 0) * evaluators;
         std::size_t step = 0;
@@ -125,7 +125,7 @@ void draw(WinProbabilities& wins,
           std::size_t top_b,
           std::uint64_t seed,
           std::uint32_t purpose,
-          const std::function<const RankedBallot&(Random&)>& ballot) {
+          const std::function<const Ballot&(Random&)>& ballot) {
     // In batches that are added up in order: the same sums on any number of threads.
     constexpr std::size_t batch = 100;
     std::vector<WinProbabilities> parts(draws / batch, wins);
@@ -135,7 +135,7 @@ void draw(WinProbabilities& wins,
         for (std::size_t k = 0; k < batch; ++k) {
             std::fill(sums.begin(), sums.end(), places.other * evaluators);
             for (int n = 0; n < evaluators; ++n) {
-                const RankedBallot& one = ballot(random);
+                const Ballot& one = ballot(random);
                 sums[static_cast<std::size_t>(one.best)] += places.best - places.other;
                 sums[static_cast<std::size_t>(one.second)] += places.second - places.other;
                 if (one.least < 0) continue;
@@ -191,9 +191,7 @@ WinProbabilities win_probabilities(const BallotLaw& law,
          b,
          seed,
          3,
-         [&](Random& random) -> const RankedBallot& {
-             return law.ballots[draw_ballot(law, random)];
-         });
+         [&](Random& random) -> const Ballot& { return law.ballots[draw_ballot(law, random)]; });
     return wins;
 }
 
@@ -219,13 +217,13 @@ WinProbabilities predicted_wins(const LuceData& data, int evaluators, std::uint6
     std::vector<WinProbabilities> parts(kFits, wins);
     constexpr double share = 1.0 / static_cast<double>(kFits * kRounds);
     for_draws(kFits, seed, 7, [&](Random& random, std::size_t index) {
-        const std::vector<RankedBallot> again = draw_round(law, evaluators, random);
-        LuceData found = luce_data(count_drawn(again, designs, has_least), &again);
+        const std::vector<Ballot> again = draw_round(law, evaluators, random);
+        LuceData found = luce_data(count_ballots(again, designs, has_least), &again);
         found.ghost = kWholeGhost;
         const BallotLaw likely = ballot_law(worths_of(fit_luce(found)), has_least);
         for (std::size_t k = 0; k < kRounds; ++k) {
             std::vector<int> sums(data.best.size(), 0);
-            for (const RankedBallot& ballot : draw_round(likely, evaluators, random)) {
+            for (const Ballot& ballot : draw_round(likely, evaluators, random)) {
                 const std::vector<int> scores = scores_of(ballot, designs, places);
                 for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += scores[i];
             }
@@ -238,7 +236,7 @@ WinProbabilities predicted_wins(const LuceData& data, int evaluators, std::uint6
     return wins;
 }
 
-WinProbabilities bootstrap_wins(const std::vector<RankedBallot>& ballots,
+WinProbabilities bootstrap_wins(const std::vector<Ballot>& ballots,
                                 int designs,
                                 bool has_least,
                                 int top_a,
@@ -256,7 +254,7 @@ WinProbabilities bootstrap_wins(const std::vector<RankedBallot>& ballots,
          static_cast<std::size_t>(top_b),
          seed,
          4,
-         [&](Random& random) -> const RankedBallot& { return ballots[random.below(count)]; });
+         [&](Random& random) -> const Ballot& { return ballots[random.below(count)]; });
     return wins;
 }
 

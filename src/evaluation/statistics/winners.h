@@ -37,7 +37,7 @@ WinProbabilities win_probabilities(const BallotLaw& law,
 WinProbabilities predicted_wins(const LuceData& data, int evaluators, std::uint64_t seed);
 
 /// Of 10^4 rounds drawn from the ballots, with replacement (Efron 1979).
-WinProbabilities bootstrap_wins(const std::vector<RankedBallot>& ballots,
+WinProbabilities bootstrap_wins(const std::vector<Ballot>& ballots,
                                 int designs,
                                 bool has_least,
                                 int top_a,

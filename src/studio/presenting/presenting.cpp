@@ -12,7 +12,7 @@
 
 #include "core/error.h"
 #include "core/log.h"
-#include "evaluation/presenting/sittings.h"
+#include "evaluation/presentation_order.h"
 #include "studio/presenting/surround.h"
 
 namespace livery {
@@ -237,15 +237,16 @@ bool refuse_editing(Studio& studio) {
     const std::string why = why_no_editing(studio);
     if (why.empty()) return false;
     const Phase phase = phase_of(studio);
-    notify(studio,
-           {Notice::Level::warning,
-            "Nothing can be changed now.",
-            why,
-            presenting(studio).freezing ? "Wait for them, or cancel it in the bar at the top."
-            : phase == Phase::locked    ? "Go back to editing in the bar at the top."
-            : presenting(studio).presented->round.voting ? "Lock the round in the bar at the top."
-                                                         : "Abort the round in the bar at the top.",
-            studio.now_s + 8.0});
+    notify(
+        studio,
+        {Notice::Level::warning,
+         "Nothing can be changed now.",
+         why,
+         presenting(studio).freezing ? "Wait for them, or cancel it in the bar at the top."
+         : phase == Phase::locked    ? "Go back to editing in the bar at the top."
+         : presenting(studio).presented->round.voting() ? "Lock the round in the bar at the top."
+                                                        : "Abort the round in the bar at the top.",
+         studio.now_s + 8.0});
     return true;
 }
 
@@ -288,9 +289,7 @@ void send(Studio& studio, PresentationEvent event) {
     const bool asks_still = event == PresentationEvent::tick && next.phase == presented.state.phase;
     if (!asks_still) state.asking_to_abort = state.asking_to_lock = false;
     presented.state = next;
-    for (const Round& round : studio.ballots->rounds()) {
-        if (round.id == presented.round.id) presented.round = round;
-    }
+    presented.round = studio.ballots->round(presented.round.id);
     read_seats(studio, true);
     if (next.phase == Phase::edit) state.presented.reset();
 }
@@ -382,7 +381,7 @@ void read_seats(Studio& studio, bool now) {
         // Another program may have locked it.
         if (!studio.ballots->open_round()) {
             state.presented->state.phase = Phase::locked;
-            state.presented->round.closed = true;
+            state.presented->round = studio.ballots->round(state.presented->round.id);
         }
     } catch (const std::exception& error) {
         state.problem = error.what();

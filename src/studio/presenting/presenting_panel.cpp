@@ -11,11 +11,10 @@
 #include <imgui.h>
 
 #include "core/error.h"
+#include "evaluation/ballot.h"
 #include "evaluation/network_interfaces.h"
 #include "evaluation/presentation_order.h"
-#include "evaluation/presenting/sittings.h"
 #include "evaluation/qr_code.h"
-#include "evaluation/statistics/vote_counts.h"
 #include "studio/kit/theme.h"
 #include "studio/kit/ui_map.h"
 #include "studio/kit/widgets.h"
@@ -417,7 +416,7 @@ void draw_presented_round(Studio& studio) {
         warning_text(state.problem);
         name_last_item("vote:problem");
     }
-    if (!presented.round.closed) {
+    if (!presented.round.closed()) {
         std::string order;
         const auto& sitting =
             presented.plan.sittings[static_cast<std::size_t>(presented.state.sitting)];
@@ -446,7 +445,7 @@ void draw_presented_round(Studio& studio) {
     }
     heading("Evaluators");
     draw_seats(studio);
-    if (!presented.round.closed) draw_waves(presented.plan.seats);
+    if (!presented.round.closed()) draw_waves(presented.plan.seats);
 }
 
 }  // namespace livery

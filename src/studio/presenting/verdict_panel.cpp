@@ -39,7 +39,7 @@ void draw_verdict(Studio& studio, const Round& round) {
                     const auto words = round_statistics(closed, seed).words;
                     std::vector<std::string> of_scales;
                     const auto scales =
-                        scale_statistics(closed.answers, closed.scales, closed.designs, seed);
+                        scale_statistics(closed.answers, round.scales, round.designs, seed);
                     for (const ScaleFigures& figures : scales.scales) {
                         of_scales.push_back(figures.words);
                     }
@@ -86,7 +86,7 @@ bool draw_duel(Studio& studio, const Round& round) {
         name_last_item("duel:words");
     }
     // Nobody leads a round without ballots.
-    if (!round.voting || (!series && round.ballots == 0)) return told;
+    if (!round.voting() || (!series && round.ballots == 0)) return told;
     if (ImGui::Button(series ? "Next repeat" : "Duel of the first two", {-FLT_MIN, em(2.4f)})) {
         presenting(studio).duel_wanted = round.id;
     }

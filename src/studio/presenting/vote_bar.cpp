@@ -151,8 +151,8 @@ std::string details(const Studio& studio) {
                 fmt::format("{}look {} of {}", sitting, step.place + 1, looks);
             if (!step.grey) return place + time;
             if (left < kWaits) return "grey after " + place + time;
-            return presented.round.voting ? "all seen: Next goes back to the votes"
-                                          : "all seen: Next lets people vote";
+            return presented.round.voting() ? "all seen: Next goes back to the votes"
+                                            : "all seen: Next lets people vote";
         }
         case Phase::voting:
             return sitting + "have voted";
@@ -300,7 +300,7 @@ float draw_buttons(Studio& studio, float right, float top, float height) {
         return left;
     }
     // Once people vote the round is locked, not aborted.
-    const bool may_abort = !state.presented->round.voting;
+    const bool may_abort = !state.presented->round.voting();
     const float left = begin(row_width(kShowing.size() + (may_abort ? 1 : 0), each));
     for (const Button& one : kShowing) {
         const bool on =

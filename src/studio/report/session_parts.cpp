@@ -217,8 +217,8 @@ std::vector<ReportFile> vote_parts(const Path& user_folder) {
                                 round.created,
                                 round.designs.size(),
                                 round.ballots,
-                                round.closed ? "closed" : "open");
-            if (round.closed && round.voting) closed.push_back(round.id);
+                                round.closed() ? "closed" : "open");
+            if (round.closed() && round.voting()) closed.push_back(round.id);
         }
         return text;
     });

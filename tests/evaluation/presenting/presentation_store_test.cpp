@@ -1,5 +1,4 @@
-// What the ballots keep of presentations, and files from before they did.
-#include <algorithm>
+// What the ballots keep of presentations.
 #include <string>
 #include <vector>
 
@@ -7,9 +6,6 @@
 
 #include "core/error.h"
 #include "evaluation/ballot_file.h"
-#include "evaluation/ballot_log.h"
-#include "evaluation/ballot_tables.h"
-#include "evaluation/ballots.h"
 #include "evaluation/closed_round.h"
 #include "support/file_error.h"
 #include "support/temporary_folder.h"
@@ -68,13 +64,13 @@ TEST(PresentationStore, VotingBeginsAndEndsWithTheSteps) {
     BallotStore store(folder / "ballots.sqlite");
     const int round = store.open_round(presented_setup());
     EXPECT_EQ(store.presented()->step.state.phase, Phase::adapting) << "killed before its step";
-    EXPECT_THROW(store.vote(round, {"Bo", 0, 1}), Refused);
+    EXPECT_THROW(store.vote(round, "Bo", {0, 1}), Refused);
     store.record_step(round, {Phase::voting}, Event::next);
-    EXPECT_TRUE(store.open_round()->voting);
-    store.vote(round, {"Bo", 0, 1});
+    EXPECT_TRUE(store.open_round()->voting());
+    store.vote(round, "Bo", {0, 1});
     store.record_step(round, {Phase::presenting, 0, 2, true}, Event::back);
-    EXPECT_TRUE(store.open_round()->voting) << "what people were told holds";
-    store.vote(round, {"Di", 0, 2});
+    EXPECT_TRUE(store.open_round()->voting()) << "what people were told holds";
+    store.vote(round, "Di", {0, 2});
     store.record_step(round, {Phase::voting}, Event::next);
     store.record_step(round, {Phase::voting}, Event::resume);
     store.record_step(round, {Phase::locked}, Event::lock);
@@ -88,7 +84,7 @@ TEST(PresentationStore, VotingBeginsAndEndsWithTheSteps) {
     store.record_step(aborted, {}, Event::abort);
     EXPECT_FALSE(store.open_round());
     EXPECT_FALSE(store.presented());
-    EXPECT_EQ(read_closed_round(store.file(), std::nullopt, 1).id, round)
+    EXPECT_EQ(read_closed_round(store.file(), std::nullopt, 1).round.id, round)
         << "nobody could vote in the other";
 }
 
@@ -123,111 +119,8 @@ TEST(PresentationStore, RefusesWhatMakesNoSense) {
                  std::invalid_argument);
     EXPECT_THROW(store.record_step(round, {Phase::presenting, 1, 0}, Event::next),
                  std::invalid_argument);
-    {
-        Database raw = raw_ballots(file);
-        record(raw,
-               {.what = LogEntry::What::shown,
-                .session = 1,
-                .round = round,
-                .at = "t",
-                .text = text_of(PresentationState{Phase::presenting, 0, 7}, Event::next)});
-    }
-    EXPECT_TRUE(fails_with([&] { store.presented(); }, {"ballots.sqlite", "round 2", "step"}));
-}
-
-/// As Livery wrote it before it presented (format 2: its log's table took no such entries), or
-/// before it knew waves, series and scales (3).
-std::filesystem::path file_of_format(int format, const TemporaryFolder& folder) {
-    const auto file = folder / "old.sqlite";
-    { const BallotStore made(file); }
-    Database raw = raw_ballots(file);
-    Transaction transaction(raw);
-    const std::vector<std::string> newer = {"ratings", "scales", "series", "sitters", "waves"};
-    for (const std::string& table : newer) raw.run("DROP TABLE " + table);
-    for (const char* table :
-         {"ballots", "designs", "rounds", "seats", "invitations", "sessions", "log"}) {
-        raw.run(std::string("DROP TABLE ") + table);
-    }
-    const auto old = log_schema(format), all = log_schema();
-    for (const std::string& statement : ballot_tables_schema()) {
-        const bool is_newer =
-            statement.find("sitters") != std::string::npos ||
-            std::any_of(newer.begin(), newer.end(), [&](const std::string& table) {
-                return statement.find(" " + table + " (") != std::string::npos ||
-                       statement.find("ON " + table) != std::string::npos;
-            });
-        if (!is_newer) raw.run(statement == all.front() ? old.front() : statement);
-    }
-    using What = LogEntry::What;
-    record(raw, {.what = What::session, .session = 1, .at = "t0"});
-    record(raw, {.what = What::seat, .session = 1, .seat = 1, .at = "t1", .text = "h", .best = 1});
-    record(raw, {.what = What::open, .session = 1, .round = 1, .at = "t2", .second = 5});
-    for (int k = 0; k < 2; ++k) {
-        record(raw,
-               {.what = What::design,
-                .session = 1,
-                .round = 1,
-                .at = "t2",
-                .text = k == 0 ? "a" : "b",
-                .best = k,
-                .second = 417 + k});
-    }
-    record(raw, {.what = What::voting, .session = 1, .round = 1, .at = "t3"});
-    record(raw, {.what = What::vote, .session = 1, .round = 1, .seat = 1, .at = "t4", .second = 1});
-    raw.run("INSERT INTO invitations VALUES (1, 'token', 'ABCDEF', 99)");
-    if (format > 2) {
-        record(raw,
-               {.what = What::plan,
-                .session = 1,
-                .round = 1,
-                .at = "t5",
-                .text = text_of(PresentationPlan{{{0, 1}, {1, 0}}, {}, "", "f", {}})});
-        record(raw,
-               {.what = What::shown,
-                .session = 1,
-                .round = 1,
-                .at = "t6",
-                .text = text_of(PresentationState{Phase::voting}, Event::next)});
-    }
-    raw.set_version(format);
-    transaction.commit();
-    return file;
-}
-
-TEST(PresentationStore, AFileFromBeforeKeepsEveryEntryAndItsHash) {
-    for (const int format : {2, 3}) {
-        const TemporaryFolder folder;
-        const auto file = file_of_format(format, folder);
-        const auto log = [&] {
-            return raw_ballots(file).run("SELECT id, at, what, text, hash FROM log ORDER BY id");
-        };
-        const auto before = log();
-        ASSERT_EQ(before.size(), format == 2 ? 7u : 9u);
-        {
-            BallotStore store(file);
-            EXPECT_EQ(store.open_round()->ballots, 1);
-            EXPECT_EQ(store.open_round()->codes, (std::vector<int>{417, 418}));
-            EXPECT_EQ(store.invitation(1)->token, "token");
-            EXPECT_EQ(store.seat_of_phone(1, "h"), 1);
-            EXPECT_EQ(store.turn_of(1, 1), Turn{}) << "nobody was dealt to a wave";
-        }
-        EXPECT_EQ(log(), before) << format;
-        EXPECT_EQ(raw_ballots(file).version(), 4);
-        BallotStore store(file);
-        store.close_round(1);
-        store.record_step(store.open_round(presented_setup()), {Phase::adapting}, Event::present);
-        EXPECT_TRUE(BallotStore(file).presented());
-    }
-}
-
-TEST(PresentationStore, AFileFromBeforeThatWasChangedIsRefusedAndStaysAsItIs) {
-    for (const int format : {2, 3}) {
-        const TemporaryFolder folder;
-        const auto file = file_of_format(format, folder);
-        raw_ballots(file).run("UPDATE ballots SET best = 1, second = 0");
-        EXPECT_TRUE(fails_with([&] { BallotStore{file}; }, {"old.sqlite", "not those of the log"}));
-        EXPECT_EQ(raw_ballots(file).version(), format);
-    }
+    forge(file, 1, round, LogEntry::Shown{{Phase::presenting, 0, 7}, Event::next});
+    EXPECT_TRUE(fails_with([&] { store.presented(); }, {"ballots.sqlite", "log entry", "place"}));
 }
 
 /// Five phones and a name in three waves, of which each sees two looks.
@@ -271,7 +164,7 @@ TEST(PresentationStore, SeatsAreDealtToWavesAndVoteInTheirTurn) {
     for (const int early : {3, 4, 5}) {
         EXPECT_THROW(waves.store.vote(waves.round, early, {0, 1}), Refused) << early;
     }
-    waves.store.vote(waves.round, {"Bo", 1, 0});  // from paper, at any time
+    waves.store.vote(waves.round, "Bo", {1, 0});  // from paper, at any time
 
     // The second wave looks: it still cannot vote, while the first may change its ballots.
     waves.step(Event::next);
@@ -299,32 +192,13 @@ TEST(PresentationStore, SeatsAreDealtToWavesAndVoteInTheirTurn) {
     EXPECT_THROW(waves.store.vote(waves.round, 4, {0, 1}), Refused);
 }
 
-TEST(PresentationStore, TheTablesRefuseABallotBeforeItsTurnWhoeverWrites) {
+TEST(PresentationStore, ABallotBeforeItsTurnIsRefusedWhoeverWrites) {
     Waves waves;
     waves.show_to_one_wave();
-    Database raw = raw_ballots(waves.file);
-    raw.run("PRAGMA foreign_keys = ON");
-    const auto vote = [&](int seat) {
-        Transaction transaction(raw);
-        record(raw,
-               {.what = LogEntry::What::vote,
-                .session = 1,
-                .round = waves.round,
-                .seat = seat,
-                .at = "t",
-                .second = 1});
-        transaction.commit();
-    };
-    EXPECT_TRUE(fails_with([&] { vote(3); }, {"the turn of this seat is still to come"}));
-    EXPECT_NO_THROW(vote(2));
-    EXPECT_NO_THROW(BallotStore{waves.file});
-    // Another wave, or one that votes too soon, is no longer what the log says.
-    raw.run("UPDATE waves SET voting = 'now' WHERE wave = 2");
-    EXPECT_TRUE(fails_with([&] { BallotStore{waves.file}; }, {"not that of the log"}));
-    raw.run("UPDATE waves SET voting = NULL WHERE wave = 2");
-    EXPECT_NO_THROW(BallotStore{waves.file});
-    raw.run("UPDATE sitters SET wave = 0 WHERE seat = 5");
-    EXPECT_TRUE(fails_with([&] { BallotStore{waves.file}; }, {"not that of the log"}));
+    forge(waves.file, 1, waves.round, LogEntry::Vote{2, {0, 1}});
+    EXPECT_EQ(waves.store.voted(waves.round), std::vector<int>{2});
+    forge(waves.file, 1, waves.round, LogEntry::Vote{3, {0, 1}});
+    EXPECT_TRUE(fails_with([&] { BallotStore{waves.file}; }, {"log entry", "too early"}));
 }
 
 TEST(PresentationStore, SeatsOfAPlanMustBeThere) {

@@ -14,7 +14,6 @@
 #include "core/error.h"
 #include "core/random.h"
 #include "evaluation/presentation_order.h"
-#include "evaluation/presenting/sittings.h"
 
 namespace livery {
 namespace {

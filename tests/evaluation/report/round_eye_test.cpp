@@ -68,7 +68,7 @@ TEST(RoundEye, IsInTheReportWithWhatEachSeatMissed) {
         html_of(round_report(source)).find("Whose eye highlights were drawn for: not recorded"),
         std::string::npos);
     source.record.emplace();
-    source.record->codes = {481, 376, 912, 555};
+    source.record->round.codes = {481, 376, 912, 555};
     source.details.eye = some_details().eye;
     const std::string html = html_of(round_report(source));
     for (const char* part : {"in the mean of 1 seat, at x -400, y 480, z 0 mm",

@@ -1,13 +1,12 @@
 // What is read of a round: from its ballots' file, and from what stands beside it.
 
-#include "evaluation/report/round_record.h"
-
 #include <string>
 
 #include <gtest/gtest.h>
 
 #include "core/image_io.h"
 #include "evaluation/ballots.h"
+#include "evaluation/closed_round.h"
 #include "evaluation/report/html_report.h"
 #include "evaluation/report/report_pictures.h"
 #include "evaluation/report/round_report.h"
@@ -23,28 +22,28 @@ std::filesystem::path recorded_round(const TemporaryFolder& folder) {
     BallotStore store(file);
     RoundSetup setup{{"red", "silver", "sand"}, "1234abcd", kCodes, 7};
     const int round = store.open_round(setup);
-    for (int k = 0; k < 6; ++k) store.vote(round, {"paper " + std::to_string(k + 1), k % 2, 2});
+    for (int k = 0; k < 6; ++k) store.vote(round, "paper " + std::to_string(k + 1), {k % 2, 2});
     store.close_round(round);
     return file;
 }
 
-TEST(RoundRecord, HasWhatProvesARound) {
+TEST(ClosedRound, HasWhatProvesARound) {
     const TemporaryFolder folder;
     const auto file = recorded_round(folder);
-    const RoundRecord record = read_round_record(file, {}, 1);
+    const ClosedRound record = read_closed_round(file, {}, 1);
     EXPECT_EQ(record.file, "votes.sqlite");
-    EXPECT_EQ(record.codes, kCodes);
-    EXPECT_EQ(record.codes_seed, 7);
+    EXPECT_EQ(record.round.codes, kCodes);
+    EXPECT_EQ(record.round.seed, 7);
     EXPECT_EQ(record.seats, 6);
-    EXPECT_EQ(record.round.ballots.size(), 6u);
-    EXPECT_EQ(record.voting_at.size(), 20u);
-    EXPECT_EQ(record.locked_at.size(), 20u);
+    EXPECT_EQ(record.ballots.size(), 6u);
+    EXPECT_EQ(record.round.voting_at.size(), 20u);
+    EXPECT_EQ(record.round.closed_at.size(), 20u);
     const auto log = BallotStore(file).log();
-    EXPECT_EQ(record.log_hash, log.back().hash);
-    EXPECT_EQ(record.log_entry, log.back().id);
+    EXPECT_EQ(record.round.lock.hash, log.back().hash);
+    EXPECT_EQ(record.round.lock.entry, log.back().id);
     // What comes later changes nothing of it.
     { BallotStore(file).open_round({"x", "y"}, ""); }
-    EXPECT_EQ(read_round_record(file, {}, 1).log_hash, record.log_hash);
+    EXPECT_EQ(read_closed_round(file, {}, 1).round.lock.hash, record.round.lock.hash);
 }
 
 RoundDetails parsed(const std::string& text) {
@@ -107,13 +106,10 @@ TEST(RoundReport, TellsWhatItHasAndSaysWhatItHasNot) {
     const auto file = recorded_round(folder);
     write_png(folder / "a.png", Image8(900, 40, 3, std::uint8_t{90}));
     RoundReportSource source;
-    source.record = read_round_record(file, {}, 1);
+    source.record = read_closed_round(file, {}, 1);
     source.names = source.record->round.designs;
-    source.statistics = vote_statistics(counts_of(source.record->round.ballots, 3, false),
-                                        source.names,
-                                        1,
-                                        &source.record->round.ballots,
-                                        20);
+    source.statistics = vote_statistics(
+        counts_of(source.record->ballots, 3, false), source.names, 1, &source.record->ballots, 20);
     source.details.folder = folder.path();
     source.details.note = "A note.";
     LookReachability reach;
@@ -121,7 +117,7 @@ TEST(RoundReport, TellsWhatItHasAndSaysWhatItHasNot) {
     source.details.looks = {{376, "a.png", reach}};
     source.details.showings = {{"2026-11-24T10:00:00Z", {1, 2}, {912, 376, 481}}};
     const std::string html = html_of(round_report(source));
-    for (const std::string& part : std::vector<std::string>{source.record->log_hash,
+    for (const std::string& part : std::vector<std::string>{source.record->round.lock.hash,
                                                             "1234abcd",
                                                             "912, 376, 481",
                                                             "93%",

@@ -137,7 +137,7 @@ TEST(Agreement, OfRanksWithMissingVotes) {
     // Two who are opposed as far as two can be.
     EXPECT_LT(*krippendorff_alpha(ranks_given({{0, 1, 2}, {2, 1, 0}}, 3)), -0.2);
     // From counts as from ballots.
-    const std::vector<RankedBallot> ballots = {{0, 1, 3}, {0, 2, 3}, {2, 1, 0}};
+    const std::vector<Ballot> ballots = {{0, 1, 3}, {0, 2, 3}, {2, 1, 0}};
     EXPECT_NEAR(*krippendorff_alpha(ranks_given(ballots, 4)),
                 *krippendorff_alpha(ranks_given(counts_of(ballots, 4, true))),
                 1e-12);

@@ -30,8 +30,8 @@ const std::vector<Size> kSizes = {{2, 6, false},
 /// Calls back with each possible round and its probability.
 void for_rounds(const BallotLaw& law,
                 int evaluators,
-                const std::function<void(const std::vector<RankedBallot>&, double)>& told) {
-    std::vector<RankedBallot> round;
+                const std::function<void(const std::vector<Ballot>&, double)>& told) {
+    std::vector<Ballot> round;
     const std::function<void(double)> more = [&](double probability) {
         if (static_cast<int>(round.size()) == evaluators) {
             told(round, probability);

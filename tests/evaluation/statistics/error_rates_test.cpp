@@ -70,7 +70,7 @@ Rates rates(const std::vector<double>& worths, int evaluators, bool has_least, i
     std::array<int, 3> told{};
     for (int round = 0; round < rounds; ++round) {
         const auto ballots = draw_round(law, evaluators, random);
-        const auto said = judge_round(count_drawn(ballots, designs, has_least));
+        const auto said = judge_round(count_ballots(ballots, designs, has_least));
         for (std::size_t k = 0; k < told.size(); ++k) told[k] += said[k] ? 1 : 0;
     }
     const double share = 1.0 / rounds;
@@ -144,7 +144,7 @@ TEST(ErrorRates, TheThresholdHoldsItsLevelInDrawnRounds) {
     Random random(kVerdictSeed);
     int at_threshold = 0, below = 0;
     for (int round = 0; round < rounds; ++round) {
-        const auto sums = rank_sums(count_drawn(draw_round(law, 10, random), 4, false));
+        const auto sums = rank_sums(count_ballots(draw_round(law, 10, random), 4, false));
         const auto [low, high] = std::minmax_element(sums.begin(), sums.end());
         at_threshold += *high - *low >= 14.5 ? 1 : 0;
         below += *high - *low >= 14.0 ? 1 : 0;
@@ -190,7 +190,7 @@ TEST(PredictedWins, NightlyAreTrueAsOftenAsTheySay) {
         for_draws(kRounds, 20261128, 9, [&](Random& random, std::size_t k) {
             const BallotLaw truth = drawn_law(each.designs, each.deviation, random);
             const auto ballots = draw_round(truth, each.evaluators, random);
-            const LuceData data = luce_data(count_drawn(ballots, each.designs, false), &ballots);
+            const LuceData data = luce_data(count_ballots(ballots, each.designs, false), &ballots);
             const LuceFit fit = fit_luce(data);
             const auto leader = static_cast<std::size_t>(by_worth(fit)[0]);
             said[k] = predicted_wins(data, each.evaluators, k).first[leader];
@@ -236,7 +236,7 @@ TEST(GhostIntervals, NightlyHoldTheTruthUnlessAllAreLikedAlike) {
         for (int round = 0; round < 4000; ++round) {
             const BallotLaw truth = drawn_law(4, deviation, random);
             const auto ballots = draw_round(truth, evaluators, random);
-            const VoteCounts counts = count_drawn(ballots, 4, false);
+            const VoteCounts counts = count_ballots(ballots, 4, false);
             if (!needs_ghost(counts)) continue;
             const LuceData data = luce_data(counts, &ballots);
             std::array<double, 4> worth{};

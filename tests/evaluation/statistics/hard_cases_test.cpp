@@ -19,7 +19,7 @@ void expect_probability(double p, const char* name) {
     EXPECT_LE(p, 1.0 + rounding) << name;
 }
 
-void expect_sound(const VoteCounts& counts, const std::vector<RankedBallot>* ballots = nullptr) {
+void expect_sound(const VoteCounts& counts, const std::vector<Ballot>* ballots = nullptr) {
     SCOPED_TRACE(std::to_string(counts.designs()) + " designs, " +
                  std::to_string(counts.evaluators()) + " evaluators, first " +
                  std::to_string(counts.best[0]) + (counts.has_least() ? ", least" : ""));

@@ -13,7 +13,7 @@
 namespace livery {
 namespace {
 
-std::vector<RankedBallot> some_ballots(int designs, int evaluators, bool has_least, int seed) {
+std::vector<Ballot> some_ballots(int designs, int evaluators, bool has_least, int seed) {
     Random random(static_cast<std::uint64_t>(seed));
     std::vector<double> worths;
     for (int i = 0; i < designs; ++i) worths.push_back(1.0 + i);

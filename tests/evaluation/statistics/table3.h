@@ -1,7 +1,7 @@
 // Table 3 of Park, Lim, Seo, Jung and Lee (2015): ten evaluators, four designs.
 #pragma once
 
-#include "evaluation/statistics/vote_counts.h"
+#include "evaluation/ballot.h"
 
 namespace livery {
 

@@ -8,8 +8,7 @@
 namespace livery {
 namespace {
 
-VoteStatistics said_of(const VoteCounts& counts,
-                       const std::vector<RankedBallot>* ballots = nullptr) {
+VoteStatistics said_of(const VoteCounts& counts, const std::vector<Ballot>* ballots = nullptr) {
     return vote_statistics(counts, default_names(counts.designs()), 1, ballots, 100);
 }
 
@@ -87,7 +86,7 @@ TEST(PredictedWins, CountWhatTheBallotsLeaveOpen) {
 }
 
 TEST(Verdict, KnowsSingleBallots) {
-    std::vector<RankedBallot> ballots;
+    std::vector<Ballot> ballots;
     for (int k = 0; k < 5; ++k) ballots.push_back({1, 3});
     ballots.insert(ballots.end(), {{1, 2}, {0, 1}, {2, 1}, {3, 1}, {3, 2}});
     ASSERT_EQ(counts_of(ballots, 4, false).best, table3().best);

@@ -52,7 +52,7 @@ TEST(RoundFiles, OfAPresentedRoundAreWhatItsReportSays) {
     }
     for (int k = 0; k < 3 && state.phase != PresentationPhase::voting; ++k) send(Event::next);
     ASSERT_EQ(state.phase, PresentationPhase::voting);
-    for (int k = 0; k < 3; ++k) store.vote(id, {"paper " + std::to_string(k), 0, 1});
+    for (int k = 0; k < 3; ++k) store.vote(id, "paper " + std::to_string(k), {0, 1});
     send(Event::next);
     for (int k = 0; k < 8 && state.phase != PresentationPhase::voting; ++k) send(Event::next);
     send(Event::lock);

@@ -85,7 +85,7 @@ TEST_F(ProblemReport, HasNeitherSessionNorPicturesNorVotesUnlessAskedFor) {
     {
         BallotStore ballots(home_ / "ballots.sqlite");
         const int round = ballots.open_round({"secret look", "another"}, "");
-        ballots.vote(round, {"Erika", 0, 1});
+        ballots.vote(round, "Erika", {0, 1});
         ballots.close_round(round);
     }
     const auto report = make();

@@ -1,10 +1,11 @@
-#include "evaluation/statistics/vote_counts.h"
+#include "evaluation/ballot.h"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 
 #include "core/error.h"
 
@@ -77,24 +78,24 @@ void check_counts(const VoteCounts& counts) {
     }
 }
 
-VoteCounts count_drawn(const std::vector<RankedBallot>& ballots, int designs, bool has_least) {
+VoteCounts count_ballots(const std::vector<Ballot>& ballots, int designs, bool has_least) {
     const std::vector<int> none(static_cast<std::size_t>(designs), 0);
     VoteCounts counts{none, none, has_least ? none : std::vector<int>{}};
-    for (const RankedBallot& ballot : ballots) {
+    for (const Ballot& ballot : ballots) {
         ++counts.best[static_cast<std::size_t>(ballot.best)];
         ++counts.second[static_cast<std::size_t>(ballot.second)];
-        if (has_least) ++counts.least[static_cast<std::size_t>(ballot.least)];
+        if (has_least && ballot.least >= 0) ++counts.least[static_cast<std::size_t>(ballot.least)];
     }
     return counts;
 }
 
-VoteCounts counts_of(const std::vector<RankedBallot>& ballots, int designs, bool has_least) {
+VoteCounts counts_of(const std::vector<Ballot>& ballots, int designs, bool has_least) {
     const auto check_place = [&](int design) {
         check_argument(design >= 0 && design < designs,
                        "counts_of: found design " + std::to_string(design) + ", expected 0 to " +
                            std::to_string(designs - 1));
     };
-    for (const RankedBallot& ballot : ballots) {
+    for (const Ballot& ballot : ballots) {
         check_place(ballot.best);
         check_place(ballot.second);
         bool twice = ballot.best == ballot.second;
@@ -104,7 +105,7 @@ VoteCounts counts_of(const std::vector<RankedBallot>& ballots, int designs, bool
         }
         check_argument(!twice, "counts_of: found a ballot that names a design twice");
     }
-    VoteCounts counts = count_drawn(ballots, designs, has_least);
+    VoteCounts counts = count_ballots(ballots, designs, has_least);
     check_counts(counts);
     return counts;
 }
@@ -130,6 +131,32 @@ std::vector<double> expected_pairs(const VoteCounts& counts) {
         if (round > 0 && furthest < near_enough) break;
     }
     return pairs;
+}
+
+std::string tally_csv(const std::vector<std::string>& designs, const VoteCounts& counts) {
+    const bool least = counts.has_least();
+    check_argument(counts.best.size() == designs.size() && counts.second.size() == designs.size() &&
+                       (!least || counts.least.size() == designs.size()),
+                   "tally_csv: " + std::to_string(designs.size()) + " designs, " +
+                       std::to_string(counts.best.size()) + " and " +
+                       std::to_string(counts.second.size()) + " counts");
+    std::string text = least ? "design,best,second,least\r\n" : "design,best,second\r\n";
+    for (std::size_t k = 0; k < designs.size(); ++k) {
+        text += csv_field(designs[k]) + ',' + std::to_string(counts.best[k]) + ',' +
+                std::to_string(counts.second[k]) +
+                (least ? ',' + std::to_string(counts.least[k]) : std::string()) + "\r\n";
+    }
+    return text;
+}
+
+std::string csv_field(const std::string& text) {
+    const bool formula =
+        !text.empty() && std::string_view("=+-@\t").find(text.front()) != std::string_view::npos;
+    const std::string cell = (formula ? "'" : "") + text;
+    if (cell.find_first_of(",\"\r\n") == std::string::npos) return cell;
+    std::string quoted = "\"";
+    for (const char c : cell) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+    return quoted + '"';
 }
 
 }  // namespace livery
