@@ -1,8 +1,107 @@
 #include "ballot/ballot_guard.h"
 
 #include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstdint>
+#include <stdexcept>
+
+#include <gnutls/crypto.h>
+#include <gnutls/gnutls.h>
+#include <sys/random.h>
+
+#include "core/utf8.h"
 
 namespace livery {
+
+namespace {
+
+constexpr std::string_view kCharacters = "23456789BCDFGHJKMNPQRSTVWXZ";
+constexpr std::size_t kCodeLength = 8;
+
+template <std::size_t Count>
+std::array<std::uint8_t, Count> random_bytes() {
+    std::array<std::uint8_t, Count> bytes{};
+    ssize_t got = 0;
+    do {
+        got = ::getrandom(bytes.data(), bytes.size(), 0);
+    } while (got < 0 && errno == EINTR);
+    if (got != static_cast<ssize_t>(bytes.size())) {
+        throw std::runtime_error("found no random numbers, expected some of the system");
+    }
+    return bytes;
+}
+
+template <typename Bytes>
+std::string hexadecimal(const Bytes& bytes) {
+    constexpr std::string_view digits = "0123456789abcdef";
+    std::string text;
+    for (const std::uint8_t byte : bytes) {
+        text += digits[byte >> 4u];
+        text += digits[byte & 15u];
+    }
+    return text;
+}
+
+}  // namespace
+
+std::string random_secret() { return hexadecimal(random_bytes<16>()); }
+
+std::string random_join_code() {
+    std::string code;
+    // Bytes beyond the last whole multiple would make some characters likelier.
+    const std::size_t most = 256 - 256 % kCharacters.size();
+    while (code.size() < kCodeLength) {
+        for (const std::uint8_t byte : random_bytes<16>()) {
+            if (byte < most && code.size() < kCodeLength) {
+                code += kCharacters[byte % kCharacters.size()];
+            }
+        }
+    }
+    return code;
+}
+
+std::string tidy_join_code(std::string_view typed) {
+    std::string code;
+    for (const char c : typed) {
+        if (c == ' ' || c == '-') continue;
+        code += c >= 'a' && c <= 'z' ? static_cast<char>(c - 'a' + 'A') : c;
+    }
+    return code;
+}
+
+std::string hash_of_secret(std::string_view secret) {
+    std::array<std::uint8_t, 32> digest{};
+    if (gnutls_hash_fast(GNUTLS_DIG_SHA256, secret.data(), secret.size(), digest.data()) < 0) {
+        throw std::runtime_error("found no SHA-256 in GnuTLS, expected one");
+    }
+    return hexadecimal(digest);
+}
+
+namespace {
+
+constexpr double kAtOnce = 60.0;
+constexpr double kRefill_per_s = 30.0 / 60.0;
+
+}  // namespace
+
+ChangeLimit::Bucket ChangeLimit::bucket_of(int seat, double now_s) const {
+    const auto found = buckets_.find(seat);
+    if (found == buckets_.end()) return {kAtOnce, now_s};
+    // A clock that is set back gives nothing, and goes on from there.
+    const double since_s = std::max(0.0, now_s - found->second.at_s);
+    return {std::min(kAtOnce, found->second.left + since_s * kRefill_per_s), now_s};
+}
+
+bool ChangeLimit::allowed(int seat, double now_s) const {
+    return bucket_of(seat, now_s).left >= 1.0;
+}
+
+void ChangeLimit::changed(int seat, double now_s) {
+    Bucket bucket = bucket_of(seat, now_s);
+    bucket.left -= 1.0;
+    buckets_[seat] = bucket;
+}
 
 namespace {
 
@@ -18,12 +117,6 @@ std::string lower_case(std::string_view text) {
 }
 
 bool is_digit(char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f'); }
-
-std::string_view trimmed(std::string_view text) {
-    while (!text.empty() && (text.front() == ' ' || text.front() == '\t')) text.remove_prefix(1);
-    while (!text.empty() && (text.back() == ' ' || text.back() == '\t')) text.remove_suffix(1);
-    return text;
-}
 
 }  // namespace
 

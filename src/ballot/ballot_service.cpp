@@ -5,8 +5,7 @@
 #include <exception>
 #include <utility>
 
-#include "ballot/page_files.h"
-#include "ballot/secrets.h"
+#include "ballot/ballot_guard.h"
 #include "core/error.h"
 
 namespace livery {

@@ -5,14 +5,18 @@
 #include <map>
 #include <set>
 #include <string>
+#include <string_view>
 
 #include "ballot/ballot_guard.h"
-#include "ballot/ballot_http.h"
 #include "ballot/ballot_messages_io.h"
-#include "ballot/change_limit.h"
 #include "evaluation/ballots.h"
 
 namespace livery {
+
+/// The page, compiled in: nothing is read from a folder, and no request leaves it.
+std::string_view page_html();
+std::string_view page_css();
+std::string_view page_js();
 
 struct BallotServiceSettings {
     ServerNames names;

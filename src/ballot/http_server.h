@@ -7,7 +7,7 @@
 #include <memory>
 #include <string>
 
-#include "ballot/ballot_http.h"
+#include "ballot/ballot_guard.h"
 
 namespace livery {
 

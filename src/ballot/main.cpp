@@ -15,12 +15,11 @@
 
 #include "ballot/ballot_service.h"
 #include "ballot/http_server.h"
-#include "ballot/interface_address.h"
 #include "ballot/process_limits.h"
 #include "core/error.h"
 #include "core/paths.h"
 #include "core/utf8.h"
-#include "evaluation/ballot_place.h"
+#include "evaluation/phone_page.h"
 
 namespace livery {
 namespace {
@@ -126,6 +125,18 @@ ServeOptions parse_options(int argc, char** argv) {
     }
     for (const std::string& host : options.hosts) check_host(host);
     return options;
+}
+
+/// The first IPv4 address of the interface ("lo", "wlan0"). Throws std::invalid_argument that lists
+/// the interfaces that have one.
+std::string interface_address(const std::string& name) {
+    std::vector<std::string> names;
+    for (const NetworkInterface& network : network_interfaces()) {
+        if (name == network.name) return network.address;
+        names.push_back(network.name + " (" + network.address + ")");
+    }
+    throw std::invalid_argument("--interface: found \"" + name +
+                                "\", expected one with an IPv4 address: " + list_of(names));
 }
 
 /// The names under which browsers know this server, once its port is known.

@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "core/error.h"
-#include "evaluation/evaluator_name.h"
+#include "evaluation/typed_words.h"
 
 namespace livery {
 

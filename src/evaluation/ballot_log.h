@@ -10,7 +10,7 @@
 #include "core/database.h"
 #include "evaluation/ballot.h"
 #include "evaluation/presenting/presentation.h"
-#include "evaluation/semantic_scale.h"
+#include "evaluation/typed_words.h"
 
 namespace livery {
 

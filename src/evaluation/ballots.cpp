@@ -5,8 +5,8 @@
 #include "core/error.h"
 #include "core/paths.h"
 #include "core/time.h"
-#include "evaluation/evaluator_name.h"
 #include "evaluation/presentation_order.h"
+#include "evaluation/typed_words.h"
 
 namespace livery {
 

@@ -12,8 +12,7 @@
 #include <imgui_stdlib.h>
 
 #include "core/utf8.h"
-#include "studio/ballot_pages.h"
-#include "studio/ballot_result.h"
+#include "studio/ballot_panel.h"
 #include "studio/kit/tab_order.h"
 #include "studio/kit/theme.h"
 #include "studio/kit/ui_map.h"
@@ -21,6 +20,7 @@
 #include "studio/kit/words.h"
 #include "studio/look_thumbnails.h"
 #include "studio/presenting/presenting.h"
+#include "studio/studio.h"
 
 namespace livery {
 

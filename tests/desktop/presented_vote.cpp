@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "evaluation/ballot_place.h"
+#include "evaluation/phone_page.h"
 
 namespace livery {
 

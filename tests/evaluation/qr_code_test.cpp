@@ -1,11 +1,9 @@
-#include "evaluation/qr_code.h"
-
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include "evaluation/ballot_place.h"
+#include "evaluation/phone_page.h"
 #include "support/zbar.h"
 
 namespace livery {

@@ -1,46 +1,16 @@
-// Word pairs, and what a ballots file keeps of the answers.
+// What a ballots file keeps of answers on scales.
 #include <functional>
 
 #include <gtest/gtest.h>
 
 #include "core/error.h"
 #include "evaluation/closed_round.h"
-#include "evaluation/report/html_report.h"
+#include "evaluation/report/report_document.h"
 #include "evaluation/report/round_report.h"
-#include "evaluation/semantic_scale.h"
 #include "support/temporary_folder.h"
 
 namespace livery {
 namespace {
-
-TEST(SemanticScale, IsTwoWordsWithAComma) {
-    EXPECT_EQ(parse_scale(" cheap , precious "), (SemanticScale{"cheap", "precious"}));
-    EXPECT_EQ(parse_scale("schlicht,auffällig"), (SemanticScale{"schlicht", "auffällig"}));
-    EXPECT_EQ(in_words({"cheap", "precious"}), "cheap – precious");
-    const std::string longest(24, 'x');
-    EXPECT_EQ(parse_scale(text_of({longest, "y"})).low, longest);
-    for (const std::string& bad : {std::string(),
-                                   std::string("cheap"),
-                                   std::string("cheap,"),
-                                   std::string(",precious"),
-                                   std::string("a,b,c"),
-                                   std::string("cheap;dear,b"),
-                                   std::string("Cheap,cheap"),
-                                   std::string("a\tb,c"),
-                                   std::string("a\nb,c"),
-                                   std::string("a\xff,c"),
-                                   std::string("\u202eevil,c"),
-                                   std::string("a,\u200b"),
-                                   std::string(25, 'x') + ",y"}) {
-        EXPECT_THROW(parse_scale(bad), std::invalid_argument) << bad;
-    }
-    EXPECT_NO_THROW(parse_scale("</script><b>,\"}alert(1)//")) << "it is text";
-    EXPECT_NO_THROW(check_scales(suggested_scales()));
-    std::vector<SemanticScale> scales = suggested_scales();
-    scales.push_back({"low", "high"});
-    EXPECT_THROW(check_scales(scales), std::invalid_argument) << "six";
-    EXPECT_THROW(check_scales({{"a", "b"}, {"a", "b"}}), std::invalid_argument);
-}
 
 class Ratings : public ::testing::Test {
   protected:

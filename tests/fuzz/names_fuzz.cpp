@@ -1,6 +1,6 @@
 #include <stdexcept>
 
-#include "evaluation/evaluator_name.h"
+#include "evaluation/typed_words.h"
 #include "fuzz/fuzz.h"
 
 LIVERY_FUZZ(text) {

@@ -1,7 +1,7 @@
 // Word pairs as they are typed: two words that can be shown, or a message that can.
 #include <stdexcept>
 
-#include "evaluation/semantic_scale.h"
+#include "evaluation/typed_words.h"
 #include "fuzz/fuzz.h"
 
 LIVERY_FUZZ(text) {

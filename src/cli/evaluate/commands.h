@@ -1,4 +1,4 @@
-// `livery evaluate`: its commands, and lists as they take them.
+// `livery evaluate`: its commands, lists as they take them, and lines that are typed meanwhile.
 #pragma once
 
 #include <optional>
@@ -31,5 +31,19 @@ std::optional<int> round_option(int round);
 
 /// check_counts() of what --best, --second and --least gave, by those names.
 void check_typed_counts(const VoteCounts& counts);
+
+/// Lines of the standard input.
+class TypedLines {
+  public:
+    /// The next line, without its end; nothing when none came within half a second. After the end
+    /// of the input what was left without a line break is a line too, then there are none.
+    std::optional<std::string> next();
+    /// Nothing is left, and nothing will come.
+    bool at_end() const { return at_end_ && waiting_.empty(); }
+
+  private:
+    std::string waiting_;
+    bool at_end_ = false;
+};
 
 }  // namespace livery

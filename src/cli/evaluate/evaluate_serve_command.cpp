@@ -13,13 +13,11 @@
 #include "cli/command.h"
 #include "cli/evaluate/commands.h"
 #include "cli/evaluate/statistics_report.h"
-#include "cli/evaluate/typed_lines.h"
 #include "core/error.h"
-#include "evaluation/ballot_process.h"
 #include "evaluation/ballots.h"
 #include "evaluation/duel.h"
+#include "evaluation/phone_page.h"
 #include "evaluation/presentation_order.h"
-#include "evaluation/qr_code.h"
 
 namespace livery {
 

@@ -12,8 +12,7 @@
 #include "core/system/version.h"
 #include "core/time.h"
 #include "core/utf8.h"
-#include "evaluation/report/html_report.h"
-#include "evaluation/report/pdf_report.h"
+#include "evaluation/report/report_document.h"
 #include "evaluation/report/round_report.h"
 #include "jobs/calibrate/calibration_grade.h"
 #include "scene/colour_calibration.h"
@@ -48,7 +47,8 @@ ReportPlaces places_of(const std::string& out, const std::string& stem) {
 
 std::string stem_of(const VoteSource& source, bool sample) {
     if (sample) return "sample-round";
-    return source.record ? fmt::format("round-{}", source.record->round.id) : "vote";
+    const auto& record = source.round.record;
+    return record ? fmt::format("round-{}", record->round.id) : "vote";
 }
 
 /// What a calibration says of itself, of the round's own calibration.
@@ -66,29 +66,23 @@ std::vector<std::pair<std::string, std::string>> figures_of_calibration(const fs
     return calibration_figures(c);
 }
 
-RoundReportSource report_source(const ReportArguments& arguments, VoteSource source) {
-    RoundReportSource report;
-    report.names = std::move(source.names);
-    report.statistics = std::move(source.statistics);
-    report.scales = std::move(source.scales);
-    if (source.record) {
-        const int round = source.record->round.id;
-        if (!arguments.details.empty()) {
-            // One that was asked for must be there; the one beside the ballots may be.
-            report.details = parse_round_details(read_text_file(arguments.details),
-                                                 arguments.details,
-                                                 round,
-                                                 source.record->round.codes);
-        } else {
-            report.details = read_round_details(source.details, round, source.record->round.codes);
-        }
+/// With what stands beside the ballots.
+RoundReportSource completed(const ReportArguments& arguments, VoteSource source) {
+    RoundReportSource report = std::move(source.round);
+    if (report.record) {
+        const Round& round = report.record->round;
+        // One that was asked for must be there; the one beside the ballots may be.
+        report.details =
+            arguments.details.empty()
+                ? read_round_details(source.details, round.id, round.codes)
+                : parse_round_details(
+                      read_text_file(arguments.details), arguments.details, round.id, round.codes);
         if (!arguments.calibration.empty()) {
             report.calibration =
-                figures_of_calibration(arguments.calibration, source.record->round.calibration_id);
+                figures_of_calibration(arguments.calibration, round.calibration_id);
         }
     }
     if (!arguments.title.empty()) report.details.title = printable(arguments.title, 200);
-    report.record = std::move(source.record);
     report.program = "livery " + version_number();
     report.made_at = utc_now();
     return report;
@@ -135,14 +129,15 @@ Command evaluate_report_command() {
             read_vote_source(arguments->source, static_cast<std::uint64_t>(common.seed));
         progress.update(0.5, "writing the report");
         const std::string stem = stem_of(source, arguments->source.sample);
+        const RoundReportSource report = completed(*arguments, std::move(source));
         Outcome outcome;
-        outcome.figures = figures_of(source.statistics, source.names);
-        if (source.record) outcome.figures["round"] = source.record->round.id;
-        const auto duel = source.record ? source.record->duel : std::nullopt;
+        outcome.figures = figures_of(report.statistics, report.names);
+        if (report.record) outcome.figures["round"] = report.record->round.id;
+        const auto duel = report.record ? report.record->duel : std::nullopt;
         if (duel) outcome.figures["series"] = figures_of(*duel);
-        if (!source.scales.scales.empty()) outcome.figures["scales"] = figures_of(source.scales);
+        if (!report.scales.scales.empty()) outcome.figures["scales"] = figures_of(report.scales);
         if (arguments->source.sample) outcome.figures["sample"] = true;
-        const ReportDocument document = round_report(report_source(*arguments, std::move(source)));
+        const ReportDocument document = round_report(report);
         const ReportPlaces places = places_of(arguments->out, stem);
         std::vector<std::string> notes;
         outcome.figures["files"] = Json::array();

@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "evaluation/report/figure_words.h"
+#include "evaluation/statistics/figure_words.h"
 
 namespace livery {
 

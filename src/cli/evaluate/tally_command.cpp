@@ -18,8 +18,8 @@ Command evaluate_tally_command() {
     command.example = "livery evaluate tally --best 1,6,1,2 --second 0,3,2,5";
     command.options = vote_source_options(*arguments);
     command.run = [arguments](const CommonOptions& common, const Progress&) {
-        const VoteSource source =
-            read_vote_source(*arguments, static_cast<std::uint64_t>(common.seed));
+        const RoundReportSource source =
+            read_vote_source(*arguments, static_cast<std::uint64_t>(common.seed)).round;
         Outcome outcome{figures_of(source.statistics, source.names),
                         text_of(source.statistics, source.names)};
         if (source.record) {

@@ -7,7 +7,6 @@
 #include <unistd.h>
 
 #include "cli/evaluate/commands.h"
-#include "cli/evaluate/typed_lines.h"
 #include "core/error.h"
 #include "core/paths.h"
 #include "evaluation/paper_ballots.h"

@@ -6,8 +6,6 @@
 #include "cli/evaluate/commands.h"
 #include "core/error.h"
 #include "core/paths.h"
-#include "evaluation/report/round_details.h"
-#include "evaluation/report/round_report.h"
 
 namespace livery {
 
@@ -60,16 +58,6 @@ void check_one_source(const VoteSourceArguments& arguments) {
     check_argument(!arguments.second.empty(), "--second: found no counts, expected them");
 }
 
-VoteSource source_of_record(ClosedRound record, std::uint64_t seed) {
-    VoteSource source;
-    const Round& round = record.round;
-    source.names = round.designs;
-    source.statistics = round_statistics(record, seed);
-    source.scales = scale_statistics(record.answers, round.scales, round.designs, seed);
-    source.record = std::move(record);
-    return source;
-}
-
 }  // namespace
 
 std::vector<Option> vote_source_options(VoteSourceArguments& arguments) {
@@ -91,18 +79,16 @@ VoteSource read_vote_source(const VoteSourceArguments& arguments, std::uint64_t 
     check_one_source(arguments);
     if (arguments.sample) {
         const SampleCopy copy;
-        ClosedRound record = read_closed_round(copy.file(), {}, seed);
-        const int round = record.round.id;
-        VoteSource source = source_of_record(std::move(record), seed);
-        source.details = round_details_file(shipped_path(kSample), round);
+        VoteSource source{report_source(read_closed_round(copy.file(), {}, seed), seed), {}};
+        source.details = round_details_file(shipped_path(kSample), source.round.record->round.id);
         return source;
     }
     if (!arguments.ballots.empty()) {
-        ClosedRound record =
-            read_closed_round(arguments.ballots, round_option(arguments.round), seed);
-        const int round = record.round.id;
-        VoteSource source = source_of_record(std::move(record), seed);
-        source.details = round_details_file(arguments.ballots, round);
+        VoteSource source{
+            report_source(read_closed_round(arguments.ballots, round_option(arguments.round), seed),
+                          seed),
+            {}};
+        source.details = round_details_file(arguments.ballots, source.round.record->round.id);
         return source;
     }
     VoteCounts counts{parse_counts("--best", arguments.best),
@@ -110,8 +96,8 @@ VoteSource read_vote_source(const VoteSourceArguments& arguments, std::uint64_t 
     if (!arguments.least.empty()) counts.least = parse_counts("--least", arguments.least);
     check_typed_counts(counts);
     VoteSource source;
-    source.names = names_or_letters(arguments.names, counts.designs());
-    source.statistics = vote_statistics(counts, source.names, seed);
+    source.round.names = names_or_letters(arguments.names, counts.designs());
+    source.round.statistics = vote_statistics(counts, source.round.names, seed);
     return source;
 }
 

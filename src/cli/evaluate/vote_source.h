@@ -3,13 +3,11 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "cli/command.h"
-#include "evaluation/closed_round.h"
-#include "evaluation/statistics/vote_statistics.h"
+#include "evaluation/report/round_report.h"
 
 namespace livery {
 
@@ -23,10 +21,7 @@ struct VoteSourceArguments {
 std::vector<Option> vote_source_options(VoteSourceArguments& arguments);
 
 struct VoteSource {
-    std::vector<std::string> names;
-    VoteStatistics statistics;
-    ScaleStatistics scales;             ///< empty where the round asks for none
-    std::optional<ClosedRound> record;  ///< nothing: typed counts
+    RoundReportSource round;  ///< without details and calibration
     /// Where what is known beside the ballots may stand; empty for typed counts.
     std::filesystem::path details;
 };

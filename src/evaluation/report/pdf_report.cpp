@@ -1,8 +1,10 @@
-#include "evaluation/report/pdf_report.h"
-
+// A report as PDF: pages of A4, its fonts embedded, with an outline and a structure for screen
+// readers. The module livery_pdf.so, which alone links Cairo and Pango.
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <exception>
+#include <string>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -112,10 +114,8 @@ class ColumnWidths {
 class PdfWriter {
   public:
     /// `pages`: how many there will be, which a first writing tells.
-    PdfWriter(const ReportDocument& document, int pages)
-        : document_(document),
-          pages_(pages),
-          canvas_(document.title, document.made_by, document.made_at, kPageWidth, kPageHeight) {}
+    PdfWriter(const ReportDocument& document, const char* fonts, int pages)
+        : document_(document), pages_(pages), canvas_(fonts, document, kPageWidth, kPageHeight) {}
 
     PdfFile written() {
         paragraph("H1", document_.title, style_of(21.0, 600), 3.0);
@@ -126,7 +126,8 @@ class PdfWriter {
         }
         end_page();
         PdfFile file;
-        file.bytes = canvas_.finish(file.unknown_characters);
+        file.bytes = canvas_.finish();
+        file.unknown_characters = canvas_.unknown_characters();
         file.pages = page_;
         return file;
     }
@@ -261,12 +262,11 @@ class PdfWriter {
         style.on_baseline = true;
         constexpr double baseline = kPageHeight - 30.0;
         const std::string number = fmt::format("{} / {}", page_, pages_);
-        const double room = kWidth - canvas_.size_of(number, style).width - 20.0;
-        std::string title = document_.title;
-        if (canvas_.size_of(title, style).width > room)
-            title = wrapped(title, 7.5, room, 1).front();
-        canvas_.text(kLeft, baseline, title, style);
-        style.anchor = 2;
+        PdfTextStyle title = style;
+        title.width = kWidth - canvas_.size_of(number, style).width - 20.0;
+        title.one_line = true;
+        canvas_.text(kLeft, baseline, document_.title, title);
+        style.anchor = TextAnchor::end;
         canvas_.text(kLeft + kWidth, baseline, number, style);
         canvas_.end_page();
     }
@@ -321,7 +321,7 @@ class PdfWriter {
         canvas_.begin_tag("TR");
         for (std::size_t k = 0; k < cells.size(); ++k) {
             PdfTextStyle style = style_of(kCellSize, head ? 600 : 400, kInkColour, widths[k]);
-            style.anchor = table.columns[k].number ? 2 : 0;
+            style.anchor = table.columns[k].number ? TextAnchor::end : TextAnchor::start;
             // Titles stand upon their line.
             const double text_height = canvas_.size_of(cells[k], style).height;
             const double top = head ? y_ + height - kCellMargin - text_height : y_ + kCellMargin;
@@ -346,9 +346,23 @@ class PdfWriter {
 
 }  // namespace
 
-PdfFile pdf_of(const ReportDocument& document) {
-    const int pages = PdfWriter(document, 1).written().pages;
-    return PdfWriter(document, pages).written();
-}
-
 }  // namespace livery
+
+/// What pdf_of() calls; no exception leaves it. False and the reason when it cannot.
+extern "C" __attribute__((visibility("default"))) bool livery_write_pdf(
+    const livery::ReportDocument& document,
+    const char* fonts,
+    livery::PdfFile& file,
+    std::string& why);
+
+bool livery_write_pdf(const livery::ReportDocument& document,
+                      const char* fonts,
+                      livery::PdfFile& file,
+                      std::string& why) try {
+    const int pages = livery::PdfWriter(document, fonts, 1).written().pages;
+    file = livery::PdfWriter(document, fonts, pages).written();
+    return true;
+} catch (const std::exception& failure) {
+    why = failure.what();
+    return false;
+}

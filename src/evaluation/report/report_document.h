@@ -63,4 +63,23 @@ struct ReportDocument {
     std::vector<ReportBlock> blocks;
 };
 
+/// UTF-8; everything that comes from elsewhere is escaped. Prints on A4.
+std::string html_of(const ReportDocument& document);
+
+/// A drawing as an `<svg>` element; title and description are for screen readers, `id` is
+/// the document's own.
+std::string svg_of(const VectorDrawing& drawing,
+                   const std::string& title,
+                   const std::string& description,
+                   const std::string& id);
+
+struct PdfFile {
+    std::string bytes;
+    int pages = 0;
+    int unknown_characters = 0;  ///< that no font at hand has: they stand as boxes
+};
+
+/// Throws FileError where the part of Livery that writes PDF, or the font, is not there.
+PdfFile pdf_of(const ReportDocument& document);
+
 }  // namespace livery

@@ -1,5 +1,6 @@
-// What is known of a round beside its ballots: what was asked, how its looks were shown. A small
-// JSON file, with pictures, in a folder beside the ballots' file.
+// What is known of a round beside its ballots: what was asked, how its looks were shown, whose eye
+// they were shaded for and what the other seats missed. A small JSON file, with pictures, in a
+// folder beside the ballots' file.
 #pragma once
 
 #include <filesystem>
@@ -7,9 +8,35 @@
 #include <string>
 #include <vector>
 
-#include "evaluation/report/round_eye.h"
+#include <glm/vec3.hpp>
 
 namespace livery {
+
+/// Of one look, by its code: CIEDE2000 of what was projected to what the seat should have seen.
+struct SeatMiss {
+    int code = 0;
+    double de00_median = 0.0, de00_p95 = 0.0;
+    double share_over_3 = 0.0;  ///< of the mock-up
+
+    bool operator==(const SeatMiss&) const = default;
+};
+
+struct RoundSeat {
+    int seat = 0;                      ///< its number, from 1
+    glm::dvec3 eye_mm{0.0};            ///< in the mock-up's frame
+    bool counts = true;                ///< in the mean
+    std::vector<SeatMiss> looks = {};  ///< empty: not known
+
+    bool operator==(const RoundSeat&) const = default;
+};
+
+struct RoundEye {
+    std::string of = {};  ///< "of seat 4", "in the mean of 5 seats"
+    glm::dvec3 eye_mm{0.0};
+    std::vector<RoundSeat> seats = {};
+
+    bool operator==(const RoundEye&) const = default;
+};
 
 /// How much of a look the projector could show, as it was shown; what is not recorded is nothing.
 struct LookReachability {

@@ -1,14 +1,15 @@
 #include "evaluation/report/round_report.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 #include <fmt/format.h>
 
-#include "evaluation/report/figure_words.h"
-#include "evaluation/report/report_pictures.h"
-#include "evaluation/report/round_tables.h"
-#include "evaluation/statistics/power.h"
+#include "core/error.h"
+#include "core/image_io.h"
+#include "evaluation/statistics/figure_words.h"
+#include "evaluation/statistics/pairs.h"
 
 namespace livery {
 
@@ -321,23 +322,64 @@ VoteStatistics round_statistics(const ClosedRound& closed, std::uint64_t seed) {
         &closed.ballots);
 }
 
+RoundReportSource report_source(ClosedRound closed, std::uint64_t seed) {
+    RoundReportSource source;
+    source.names = closed.round.designs;
+    source.statistics = round_statistics(closed, seed);
+    source.scales = scale_statistics(closed.answers, closed.round.scales, source.names, seed);
+    source.record = std::move(closed);
+    return source;
+}
+
 RoundReportSource round_report_source(const std::filesystem::path& ballots,
                                       std::optional<int> id,
                                       std::uint64_t seed) {
-    ClosedRound closed = read_closed_round(ballots, id, seed);
-    const Round& round = closed.round;
-    RoundReportSource source;
-    source.names = round.designs;
-    source.statistics = round_statistics(closed, seed);
-    source.scales = scale_statistics(closed.answers, round.scales, round.designs, seed);
+    RoundReportSource source = report_source(read_closed_round(ballots, id, seed), seed);
+    const Round& round = source.record->round;
     source.details =
         read_round_details(round_details_file(ballots, round.id), round.id, round.codes);
-    source.record = std::move(closed);
     return source;
 }
 
 ReportDocument round_report(const RoundReportSource& source) {
     return ReportBuilder(source).made();
+}
+
+Image8 read_report_picture(const std::filesystem::path& file, int widest) {
+    const ImageFile read = read_image(file);
+    if (read.floating_point) {
+        throw FileError(file, "", "floating-point values", "a picture to look at, such as a PNG");
+    }
+    const ImageF& image = read.image;
+    const int width = std::min(image.width, widest);
+    const int height = std::max(
+        1, static_cast<int>(std::lround(static_cast<double>(image.height) * width / image.width)));
+    Image8 small(width, height, 3);
+    // The mean over what each pixel covers, of the values as they are: for thumbnails good enough.
+    const auto bounds = [](int at, int count, int of) {
+        const auto from = static_cast<int>(static_cast<std::int64_t>(at) * of / count);
+        const auto to = static_cast<int>(static_cast<std::int64_t>(at + 1) * of / count);
+        return std::pair{from, std::max(from + 1, to)};
+    };
+    for (int y = 0; y < height; ++y) {
+        const auto [top, bottom] = bounds(y, height, image.height);
+        for (int x = 0; x < width; ++x) {
+            const auto [left, right] = bounds(x, width, image.width);
+            for (int c = 0; c < 3; ++c) {
+                const int channel = image.channels >= 3 ? c : 0;
+                double sum = 0.0;
+                for (int row = top; row < bottom; ++row) {
+                    for (int column = left; column < right; ++column) {
+                        sum += static_cast<double>(image.at(column, row, channel));
+                    }
+                }
+                const double mean = sum / ((bottom - top) * (right - left)) / read.full_scale;
+                small.at(x, y, c) =
+                    static_cast<std::uint8_t>(std::lround(255.0 * std::clamp(mean, 0.0, 1.0)));
+            }
+        }
+    }
+    return small;
 }
 
 }  // namespace livery

@@ -1,11 +1,10 @@
-#include "evaluation/report/round_tables.h"
-
 #include <algorithm>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "evaluation/report/figure_words.h"
+#include "evaluation/report/round_report.h"
+#include "evaluation/statistics/figure_words.h"
 
 namespace livery {
 

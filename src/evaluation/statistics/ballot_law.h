@@ -1,6 +1,8 @@
-// Which ballots come about with what probability.
+// Which ballots come about with what probability, and draws of them.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <vector>
@@ -41,5 +43,15 @@ void for_draws(std::size_t count,
                std::uint64_t seed,
                std::uint32_t purpose,
                const std::function<void(Random& random, std::size_t index)>& draw);
+
+/// Draws `draws` rounds of `evaluators`, each of whom makes one of `choices` (what it adds to each
+/// of up to 26 sums, at most 60 each): told(index, sums) for every draw, from any thread. The same
+/// for a seed and `purpose` on any number of threads.
+void draw_sums(const std::vector<std::vector<int>>& choices,
+               int evaluators,
+               std::size_t draws,
+               std::uint64_t seed,
+               std::uint32_t purpose,
+               const std::function<void(std::size_t index, const std::vector<int>& sums)>& told);
 
 }  // namespace livery

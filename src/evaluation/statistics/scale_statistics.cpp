@@ -8,7 +8,7 @@
 
 #include "core/error.h"
 #include "core/random.h"
-#include "evaluation/statistics/significance.h"
+#include "evaluation/statistics/figure_words.h"
 
 namespace livery {
 

@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "evaluation/semantic_scale.h"
 #include "evaluation/statistics/tails.h"
+#include "evaluation/typed_words.h"
 
 namespace livery {
 

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "evaluation/statistics/power.h"
-#include "evaluation/statistics/significance.h"
+#include "evaluation/statistics/figure_words.h"
+#include "evaluation/statistics/pairs.h"
 #include "evaluation/statistics/tails.h"
 
 namespace livery {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "evaluation/statistics/plackett_luce.h"
-#include "evaluation/statistics/rank_sums.h"
+#include "evaluation/statistics/preference_tests.h"
 
 namespace livery {
 

@@ -6,9 +6,8 @@
 #include <string>
 #include <vector>
 
-#include "evaluation/statistics/best_votes.h"
 #include "evaluation/statistics/pairs.h"
-#include "evaluation/statistics/rank_sums.h"
+#include "evaluation/statistics/preference_tests.h"
 #include "evaluation/statistics/tails.h"
 #include "evaluation/statistics/verdict.h"
 #include "evaluation/statistics/winners.h"

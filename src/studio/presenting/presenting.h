@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "evaluation/ballot_process.h"
 #include "evaluation/ballots.h"
+#include "evaluation/phone_page.h"
 #include "live/projector_setup.h"
 #include "projection/projector_screen.h"
 #include "studio/presenting/frames_folder.h"

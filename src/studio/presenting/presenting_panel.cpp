@@ -12,9 +12,8 @@
 
 #include "core/error.h"
 #include "evaluation/ballot.h"
-#include "evaluation/network_interfaces.h"
+#include "evaluation/phone_page.h"
 #include "evaluation/presentation_order.h"
-#include "evaluation/qr_code.h"
 #include "studio/kit/theme.h"
 #include "studio/kit/ui_map.h"
 #include "studio/kit/widgets.h"

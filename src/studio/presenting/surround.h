@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "core/image.h"
-#include "evaluation/qr_code.h"
+#include "evaluation/phone_page.h"
 
 namespace livery {
 

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "evaluation/report/round_eye.h"
+#include "evaluation/report/round_details.h"
 #include "session/document.h"
 #include "studio/studio.h"
 

@@ -7,8 +7,8 @@
 
 #include <gtest/gtest.h>
 
+#include "evaluation/report/round_report.h"
 #include "evaluation/report/sample_votes.h"
-#include "evaluation/report/vote_charts.h"
 
 namespace livery {
 namespace {

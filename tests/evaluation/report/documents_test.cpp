@@ -6,8 +6,7 @@
 #include <gtest/gtest.h>
 #include <zlib.h>
 
-#include "evaluation/report/html_report.h"
-#include "evaluation/report/pdf_report.h"
+#include "evaluation/report/report_document.h"
 #include "evaluation/report/sample_votes.h"
 
 namespace livery {

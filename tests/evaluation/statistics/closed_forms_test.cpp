@@ -4,10 +4,8 @@
 
 #include <gtest/gtest.h>
 
-#include "evaluation/statistics/agreement.h"
 #include "evaluation/statistics/pairs.h"
-#include "evaluation/statistics/power.h"
-#include "evaluation/statistics/rank_sums.h"
+#include "evaluation/statistics/preference_tests.h"
 #include "evaluation/statistics/tails.h"
 #include "evaluation/statistics/winners.h"
 

@@ -8,8 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "evaluation/statistics/best_votes.h"
-#include "evaluation/statistics/rank_sums.h"
+#include "evaluation/statistics/preference_tests.h"
 #include "evaluation/statistics/winners.h"
 
 namespace livery {

@@ -1,16 +1,19 @@
-// How often the verdicts are wrong, over drawn rounds in which it is known that they are.
-
+// How often the verdicts are wrong, over drawn rounds, duels and answers in which it is known that
+// they are.
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <iostream>
 #include <map>
 #include <numeric>
 
 #include <gtest/gtest.h>
 
+#include "core/random.h"
+#include "evaluation/statistics/duel_statistics.h"
 #include "evaluation/statistics/pairs.h"
-#include "evaluation/statistics/power.h"
+#include "evaluation/statistics/scale_statistics.h"
 #include "evaluation/statistics/table3.h"
 #include "evaluation/statistics/tails.h"
 #include "evaluation/statistics/verdict.h"
@@ -260,6 +263,126 @@ TEST(GhostIntervals, NightlyHoldTheTruthUnlessAllAreLikedAlike) {
     for (const int evaluators : {6, 10, 20}) EXPECT_GT(share_held(evaluators, 2.0), 0.93);
     EXPECT_GT(share_held(8, 1.0), 0.93);
     EXPECT_LT(share_held(6, 0.0), 0.8) << "they need no warning any more";
+}
+
+/// How often the verdict is wrong, over 10,000 duels of evaluators without a preference in common:
+/// each chooses the first look with a chance of its own, which is as often below a half as above.
+TEST(DuelErrorRates, StayWithinFivePercentWhoeverGuessesAndWhoeverIsMissing) {
+    constexpr int duels = 10'000;
+    constexpr std::uint64_t seed = 20150101;
+    // Three standard errors of a rate of .05
+    const double most = 0.05 + 3.0 * std::sqrt(0.05 * 0.95 / duels);
+    const double even[] = {0.5, 0.5}, camps[] = {0.03, 0.97}, leanings[] = {0.3, 0.7};
+    for (const auto& [name, chances] :
+         {std::pair{"guessers", even}, {"two camps", camps}, {"leanings", leanings}}) {
+        for (const int evaluators : {8, 10, 12, 24, 40}) {
+            for (const double missing : {0.0, 0.2}) {
+                Random random(seed, static_cast<std::uint64_t>(evaluators));
+                int preferred = 0, consistent = 0;
+                for (int duel = 0; duel < duels; ++duel) {
+                    std::vector<DuelAnswers> answers;
+                    for (int k = 0; k < evaluators; ++k) {
+                        const double chance = chances[random.below(2)];
+                        DuelAnswers& own = answers.emplace_back();
+                        for (int repeat = 0; repeat < 3; ++repeat) {
+                            const bool absent = random.uniform() < missing;
+                            const int choice = random.uniform() < chance ? 0 : 1;
+                            own.push_back(absent ? -1 : choice);
+                        }
+                    }
+                    const DuelStatistics found = duel_statistics(answers, 3);
+                    preferred += found.kind == DuelVerdictKind::preferred ? 1 : 0;
+                    consistent += found.consistency_p <= 0.05 ? 1 : 0;
+                }
+                const double rate = static_cast<double>(preferred) / duels;
+                const double guessed = static_cast<double>(consistent) / duels;
+                std::cout << name << ", " << evaluators << " evaluators, " << 100.0 * missing
+                          << "% of answers missing: \"preferred\" in " << 100.0 * rate
+                          << "%, \"more than guessing\" in " << 100.0 * guessed << "%\n";
+                EXPECT_LE(rate, most);
+                if (chances == even) {
+                    EXPECT_LE(guessed, most);
+                }
+            }
+        }
+    }
+}
+
+constexpr std::uint64_t kScaleSeed = 20150101;
+const std::vector<SemanticScale> kScales = {
+    {"cheap", "precious"}, {"cold", "warm"}, {"plain", "striking"}};
+const std::vector<std::string> kNames = {"a", "b", "c", "d"};
+
+/// Every evaluator has a middle of his own and steps around it, the same for all looks.
+std::vector<ScaleAnswers> drawn_answers(int evaluators, Random& random) {
+    std::vector<ScaleAnswers> answers;
+    for (int k = 0; k < evaluators; ++k) {
+        const double middle = 2.5 + 3.0 * random.uniform();
+        ScaleAnswers& own = answers.emplace_back();
+        for (std::size_t design = 0; design < kNames.size(); ++design) {
+            auto& steps = own.emplace_back();
+            for (std::size_t scale = 0; scale < kScales.size(); ++scale) {
+                const double at = middle + 1.2 * random.normal();
+                steps.push_back(std::clamp(static_cast<int>(std::lround(at)), 1, 7));
+            }
+        }
+    }
+    return answers;
+}
+
+TEST(ScaleErrorRates, NightlyAFamilyOfScalesIsCalledDifferentInFivePercentAtMost) {
+    constexpr int rounds = 2000;
+    // Three standard errors of a rate of .05 in 2000 rounds
+    const double most = 0.05 + 3.0 * std::sqrt(0.05 * 0.95 / rounds);
+    for (const int evaluators : {4, 10, 24}) {
+        Random random(kScaleSeed, static_cast<std::uint64_t>(evaluators));
+        int different = 0;
+        for (int round = 0; round < rounds; ++round) {
+            const auto found = scale_statistics(drawn_answers(evaluators, random),
+                                                kScales,
+                                                kNames,
+                                                static_cast<std::uint64_t>(round),
+                                                399);
+            different += std::any_of(found.scales.begin(),
+                                     found.scales.end(),
+                                     [](const auto& figures) { return figures.holm_p <= 0.05; })
+                             ? 1
+                             : 0;
+        }
+        const double rate = static_cast<double>(different) / rounds;
+        std::cout << evaluators << " evaluators, three scales, no look differs: one is said to in "
+                  << 100.0 * rate << "%\n";
+        EXPECT_LE(rate, most);
+    }
+}
+
+/// Plain percentiles of ten evaluators would hold the truth in about 90%; fewer than eight are
+/// given no interval, since the expanded ones of six hold it in 91%.
+TEST(ScaleErrorRates, NightlyIntervalsOfMeansHoldAboutAsOftenAsTheySay) {
+    constexpr int rounds = 2000;
+    for (const int evaluators : {8, 10, 24}) {
+        // The truth, from many
+        Random random(kScaleSeed, 99);
+        double truth = 0.0;
+        const auto many = drawn_answers(40'000, random);
+        for (const ScaleAnswers& own : many) truth += own[0][0] / 40'000.0;
+        int holds = 0;
+        for (int round = 0; round < rounds; ++round) {
+            const auto found = scale_statistics(drawn_answers(evaluators, random),
+                                                kScales,
+                                                kNames,
+                                                static_cast<std::uint64_t>(round),
+                                                399);
+            const Interval& interval = found.scales[0].looks[0].interval;
+            holds += interval.low <= truth && truth <= interval.high ? 1 : 0;
+        }
+        const double rate = static_cast<double>(holds) / rounds;
+        std::cout << evaluators << " evaluators: the 95% interval of a mean holds the truth in "
+                  << 100.0 * rate << "%\n";
+        // Means of few whole steps take few values: a percent of room, and three standard errors.
+        EXPECT_GE(rate, 0.94 - 3.0 * std::sqrt(0.95 * 0.05 / rounds));
+        EXPECT_LE(rate, 0.99);
+    }
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/image_io.h"
-#include "evaluation/report/html_report.h"
+#include "evaluation/report/report_document.h"
 #include "evaluation/report/round_report.h"
 #include "support/temporary_folder.h"
 

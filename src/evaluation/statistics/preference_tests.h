@@ -1,4 +1,6 @@
-// Ranks of partly ordered ballots: Friedman's test, Kendall's W, the range of rank sums and Borda.
+// Tests without a model, of whether there is any preference: Friedman's and Kendall's W on the
+// ranks of partly ordered ballots, Krippendorff's alpha, the range of rank sums, Borda, and the
+// votes for best by themselves.
 #pragma once
 
 #include <cstdint>
@@ -74,5 +76,30 @@ double friedman_p(const RankSumNull& null, const VoteCounts& counts);
 std::optional<double> range_threshold(const RankSumNull& null, double level = 0.05);
 /// The smallest p that a round of this size can have.
 double smallest_p(const RankSumNull& null);
+
+/// Krippendorff's alpha for values on an interval scale. `values[u]` are those that the coders gave
+/// unit u, in any order; who gave none is left out. A unit with fewer than two says nothing.
+/// Nothing where no unit has two, or all values are the same. Krippendorff, Content Analysis, 2004.
+std::optional<double> krippendorff_alpha(const std::vector<std::vector<double>>& values);
+
+/// The mid-ranks that ballots give each design, [design][...]: with no second best named the others
+/// share their places, a ballot without a best gives none. Ranks of complete ballots make alpha the
+/// same on an interval as on an ordinal scale.
+std::vector<std::vector<double>> ranks_given(const std::vector<Ballot>& ballots, int designs);
+/// The same from the counts of complete ballots.
+std::vector<std::vector<double>> ranks_given(const VoteCounts& counts);
+
+struct BestVotesTest {
+    double chi_square = 0.0;
+    double asymptotic_p = 1.0;  ///< chi-square with k - 1 degrees of freedom
+    double p = 1.0;             ///< of a chi-square as large, over all outcomes of the multinomial
+    Method method = Method::exact;
+    std::int64_t cases = 0;  ///< outcomes without regard to which design has which count, or draws
+};
+
+/// Exact while there are at most `most_states` such outcomes, otherwise from 10^6 draws.
+BestVotesTest best_votes_test(const std::vector<int>& best,
+                              std::uint64_t seed,
+                              std::int64_t most_states = 1'000'000);
 
 }  // namespace livery

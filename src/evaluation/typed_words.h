@@ -1,5 +1,4 @@
-// Semantic differential (Osgood, Suci and Tannenbaum 1957): where a look lies between two opposite
-// words, in seven steps.
+// Names and word pairs that people type: what they may be, and when two are one.
 #pragma once
 
 #include <string>
@@ -7,6 +6,14 @@
 #include <vector>
 
 namespace livery {
+
+/// Without the white space around it, and single spaces within. Throws std::invalid_argument:
+/// empty, over 200 bytes, not UTF-8, control characters.
+std::string tidy_name(std::string_view name);
+
+/// Equal for names of one person: tidy, and lower case in the Latin, Greek and Cyrillic alphabets
+/// ("ÅSA" and "åsa"). No locale is asked, so a file means the same everywhere.
+std::string name_key(std::string_view name);
 
 struct SemanticScale {
     std::string low, high;  ///< "cheap", "precious": the words at steps 1 and 7

@@ -1,8 +1,12 @@
-#include "evaluation/report/figure_words.h"
+#include "evaluation/statistics/figure_words.h"
 
 #include <fmt/format.h>
 
 namespace livery {
+
+std::string p_words(double p) {
+    return p < 0.0001 ? std::string("p < 0.0001") : fmt::format("p = {:.2g}", p);
+}
 
 std::string odds_text(double odds) {
     if (odds > 9999.0) return "over 9999";

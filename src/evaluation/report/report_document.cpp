@@ -1,4 +1,4 @@
-#include "evaluation/report/html_report.h"
+#include "evaluation/report/report_document.h"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,10 @@
 
 #include <fmt/format.h>
 
+#include "core/error.h"
+#include "core/paths.h"
 #include "core/pictures/png_bytes.h"
+#include "core/system/module.h"
 #include "core/text/markup.h"
 
 namespace livery {
@@ -225,6 +228,20 @@ std::string html_of(const ReportDocument& document) {
                                html_escaped(document.made_by),
                                html_escaped(document.made_at));
     return writer.text;
+}
+
+PdfFile pdf_of(const ReportDocument& document) {
+    // Built with this program and nothing else: plain C++ crosses the line.
+    using Write = bool (*)(const ReportDocument&, const char* fonts, PdfFile&, std::string& why);
+    static const auto write = reinterpret_cast<Write>(
+        symbol_of_module("livery_pdf.so", "livery_write_pdf", "Livery's writer of PDF"));
+    PdfFile file;
+    std::string why;
+    const auto fonts = shipped_path("fonts/Inter-Regular.otf").parent_path();
+    if (!write(document, fonts.c_str(), file, why)) {
+        throw FileError("PDF", "", why, "fonts, and a document that can be written");
+    }
+    return file;
 }
 
 }  // namespace livery

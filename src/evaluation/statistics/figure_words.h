@@ -1,12 +1,19 @@
-// Figures of a vote as people read them, the same on a terminal and in a report.
+// What a test's p has to reach, and figures of a vote as people read them, the same on a terminal
+// and in a report.
 #pragma once
 
 #include <cstdint>
 #include <string>
 
-#include "evaluation/statistics/rank_sums.h"
+#include "evaluation/statistics/preference_tests.h"
 
 namespace livery {
+
+/// Of every test whose result is put into a verdict.
+inline constexpr double kSignificanceLevel = 0.05;
+
+/// "p = 0.012"; the smallest are "p < 0.0001".
+std::string p_words(double p);
 
 /// "2.37", "0.034", "over 9999"
 std::string odds_text(double odds);
