@@ -1,5 +1,6 @@
-// One request of a phone and its answer, as values, and who may ask: names of the server, origins,
-// cookies, secrets, and how often a seat may change what it said.
+// One request of a phone and its answer, as values; who may ask (names of the server, origins,
+// cookies, secrets), how often a seat may change what it said, and what the process may use that
+// faces the network, whatever it is told to do.
 #pragma once
 
 #include <cstddef>
@@ -84,5 +85,12 @@ std::string seat_cookie(const std::string& secret, bool tls);
 
 /// In a time that says nothing about where they differ.
 bool same_secret(std::string_view given, std::string_view expected);
+
+/// Limits on data (64 MB), open files, and the size of files; no core file, no child process, no
+/// new rights. They hold until the end of the process. Throws std::runtime_error.
+void limit_this_process();
+
+/// Ends this process with the one that started it. Throws std::runtime_error.
+void end_with_parent();
 
 }  // namespace livery

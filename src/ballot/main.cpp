@@ -13,9 +13,9 @@
 
 #include <getopt.h>
 
+#include "ballot/ballot_guard.h"
 #include "ballot/ballot_service.h"
 #include "ballot/http_server.h"
-#include "ballot/process_limits.h"
 #include "core/error.h"
 #include "core/paths.h"
 #include "core/utf8.h"

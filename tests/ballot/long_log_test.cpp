@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include "ballot/ballot_guard.h"
 #include "ballot/ballot_service.h"
-#include "ballot/process_limits.h"
 #include "support/temporary_folder.h"
 #include "support/thorough.h"
 

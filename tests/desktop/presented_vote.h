@@ -6,7 +6,7 @@
 
 #include "desktop/two_monitors.h"
 #include "evaluation/ballots.h"
-#include "studio/presenting/frames_folder.h"
+#include "studio/presenting/round_files.h"
 
 namespace livery {
 

@@ -1,12 +1,16 @@
-// `livery evaluate`: its commands, lists as they take them, and lines that are typed meanwhile.
+// `livery evaluate`: its commands, and what they share: lists as they take them, where a round of
+// votes comes from, its statistics for scripts and for people, and lines that are typed meanwhile.
 #pragma once
 
+#include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "cli/command.h"
-#include "evaluation/ballot.h"
+#include "core/json.h"
+#include "evaluation/report/round_report.h"
 
 namespace livery {
 
@@ -45,5 +49,35 @@ class TypedLines {
     std::string waiting_;
     bool at_end_ = false;
 };
+
+struct VoteSourceArguments {
+    std::string best, second, least, names, ballots;
+    int round = 0;
+    bool sample = false;
+};
+
+/// --best, --second, --least, --names, --ballots, --round and --sample.
+std::vector<Option> vote_source_options(VoteSourceArguments& arguments);
+
+struct VoteSource {
+    RoundReportSource round;  ///< without details and calibration
+    /// Where what is known beside the ballots may stand; empty for typed counts.
+    std::filesystem::path details;
+};
+
+/// Throws std::invalid_argument for options that do not go together or counts that cannot be, and
+/// as read_closed_round().
+VoteSource read_vote_source(const VoteSourceArguments& arguments, std::uint64_t seed);
+
+/// A list, of each scale what its looks and its test say.
+Json figures_of(const ScaleStatistics& statistics);
+std::string text_of(const ScaleStatistics& statistics, const std::vector<std::string>& names);
+
+/// Of a series: rounds[], designs[], votes[][], majorities[], and the tests.
+Json figures_of(const DuelRecord& duel);
+std::string text_of(const DuelRecord& duel);
+
+Json figures_of(const VoteStatistics& statistics, const std::vector<std::string>& names);
+std::string text_of(const VoteStatistics& statistics, const std::vector<std::string>& names);
 
 }  // namespace livery

@@ -12,7 +12,6 @@
 
 #include "cli/command.h"
 #include "cli/evaluate/commands.h"
-#include "cli/evaluate/statistics_report.h"
 #include "core/error.h"
 #include "evaluation/ballots.h"
 #include "evaluation/duel.h"

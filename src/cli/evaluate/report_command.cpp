@@ -5,8 +5,6 @@
 #include <fmt/format.h>
 
 #include "cli/evaluate/commands.h"
-#include "cli/evaluate/statistics_report.h"
-#include "cli/evaluate/vote_source.h"
 #include "core/error.h"
 #include "core/paths.h"
 #include "core/system/version.h"

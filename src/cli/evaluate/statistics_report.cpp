@@ -1,11 +1,10 @@
-#include "cli/evaluate/statistics_report.h"
-
 #include <algorithm>
 #include <cstddef>
 
 #include <fmt/format.h>
 
-#include "evaluation/statistics/figure_words.h"
+#include "cli/evaluate/commands.h"
+#include "evaluation/statistics/figures.h"
 
 namespace livery {
 

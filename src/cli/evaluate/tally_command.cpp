@@ -5,8 +5,6 @@
 #include <fmt/format.h>
 
 #include "cli/evaluate/commands.h"
-#include "cli/evaluate/statistics_report.h"
-#include "cli/evaluate/vote_source.h"
 
 namespace livery {
 

@@ -6,7 +6,7 @@
 
 #include "evaluation/report/round_report.h"
 #include "evaluation/report/vector_drawing.h"
-#include "evaluation/statistics/figure_words.h"
+#include "evaluation/statistics/figures.h"
 
 namespace livery {
 

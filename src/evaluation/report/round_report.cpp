@@ -8,7 +8,7 @@
 
 #include "core/error.h"
 #include "core/image_io.h"
-#include "evaluation/statistics/figure_words.h"
+#include "evaluation/statistics/figures.h"
 #include "evaluation/statistics/pairs.h"
 
 namespace livery {

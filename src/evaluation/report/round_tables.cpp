@@ -4,7 +4,7 @@
 #include <fmt/ranges.h>
 
 #include "evaluation/report/round_report.h"
-#include "evaluation/statistics/figure_words.h"
+#include "evaluation/statistics/figures.h"
 
 namespace livery {
 

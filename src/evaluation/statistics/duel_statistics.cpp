@@ -6,7 +6,7 @@
 #include <fmt/format.h>
 
 #include "core/error.h"
-#include "evaluation/statistics/figure_words.h"
+#include "evaluation/statistics/figures.h"
 
 namespace livery {
 

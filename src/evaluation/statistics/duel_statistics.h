@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "evaluation/statistics/tails.h"
+#include "evaluation/statistics/figures.h"
 
 namespace livery {
 

@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "core/parallel.h"
-#include "evaluation/statistics/tails.h"
+#include "evaluation/statistics/figures.h"
 
 namespace livery {
 

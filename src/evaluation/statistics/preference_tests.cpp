@@ -9,7 +9,7 @@
 
 #include "core/error.h"
 #include "evaluation/statistics/ballot_law.h"
-#include "evaluation/statistics/tails.h"
+#include "evaluation/statistics/figures.h"
 
 namespace livery {
 

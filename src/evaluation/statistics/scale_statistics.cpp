@@ -8,7 +8,7 @@
 
 #include "core/error.h"
 #include "core/random.h"
-#include "evaluation/statistics/figure_words.h"
+#include "evaluation/statistics/figures.h"
 
 namespace livery {
 

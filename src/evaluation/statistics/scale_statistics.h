@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "evaluation/statistics/tails.h"
+#include "evaluation/statistics/figures.h"
 #include "evaluation/typed_words.h"
 
 namespace livery {

@@ -4,9 +4,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "evaluation/statistics/figure_words.h"
+#include "evaluation/statistics/figures.h"
 #include "evaluation/statistics/pairs.h"
-#include "evaluation/statistics/tails.h"
 
 namespace livery {
 

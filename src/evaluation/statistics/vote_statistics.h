@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "evaluation/statistics/figures.h"
 #include "evaluation/statistics/pairs.h"
 #include "evaluation/statistics/preference_tests.h"
-#include "evaluation/statistics/tails.h"
 #include "evaluation/statistics/verdict.h"
 #include "evaluation/statistics/winners.h"
 

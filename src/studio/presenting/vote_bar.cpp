@@ -12,7 +12,6 @@
 #include "studio/kit/ui_map.h"
 #include "studio/kit/widgets.h"
 #include "studio/presenting/presenting.h"
-#include "studio/presenting/vote_mode.h"
 #include "studio/projector_control.h"
 #include "studio/window/shell.h"
 

@@ -1,5 +1,4 @@
-#include "studio/presenting/vote_mode.h"
-
+// A vote in the running window: freezing looks, and what the projector shows of them.
 #include <algorithm>
 #include <cmath>
 #include <numeric>

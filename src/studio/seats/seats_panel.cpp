@@ -22,14 +22,12 @@ namespace {
 
 constexpr double kCoarseStep = 10.0, kFineStep = 0.1;  // with Shift, with Ctrl
 
-SeatsPanelState& panel_of(Studio& studio) { return *studio.panels.seats; }
-
 const EyeSeat* selected_seat(const Studio& studio) {
     return find_seat(studio.session.document().seats, studio.panels.seats->selected);
 }
 
 void move_selected(Studio& studio, const glm::dvec3& by_mm) {
-    SeatsPanelState& state = panel_of(studio);
+    SeatsPanelState& state = *studio.panels.seats;
     take_outline(studio);
     const EyeSeat* seat = selected_seat(studio);
     if (!seat) return;
@@ -55,7 +53,7 @@ void remove_selected(Studio& studio) {
 }
 
 void add_seat(Studio& studio) {
-    SeatsPanelState& state = panel_of(studio);
+    SeatsPanelState& state = *studio.panels.seats;
     const Document& document = studio.session.document();
     const EyeSeat seat = next_seat(state.bounds, eye_in_use_mm(document), document.seats);
     state.selected = seat.number;
@@ -101,7 +99,7 @@ void draw_eye_choice(Studio& studio) {
 }
 
 void draw_buttons(Studio& studio) {
-    SeatsPanelState& state = panel_of(studio);
+    SeatsPanelState& state = *studio.panels.seats;
     const Document& document = studio.session.document();
     const float gap = ImGui::GetStyle().ItemInnerSpacing.x;
     const float half = std::floor(0.5f * (ImGui::GetContentRegionAvail().x - gap));
@@ -135,7 +133,7 @@ void draw_buttons(Studio& studio) {
 }
 
 void draw_selected(Studio& studio, std::vector<EyeSeat>& seats) {
-    SeatsPanelState& state = panel_of(studio);
+    SeatsPanelState& state = *studio.panels.seats;
     const auto found = std::find_if(seats.begin(), seats.end(), [&](const EyeSeat& seat) {
         return seat.number == state.selected;
     });
@@ -172,7 +170,7 @@ void draw_selected(Studio& studio, std::vector<EyeSeat>& seats) {
 }
 
 void draw_figures_row(Studio& studio, const EyeSeat& seat) {
-    SeatsPanelState& state = panel_of(studio);
+    SeatsPanelState& state = *studio.panels.seats;
     const SeatErrorMap* map = seat_error_of(studio, studio.shown_look, seat.number);
     ImGui::TableNextRow();
     ImGui::TableNextColumn();
@@ -197,7 +195,7 @@ void draw_figures_row(Studio& studio, const EyeSeat& seat) {
 }
 
 void draw_what_they_miss(Studio& studio) {
-    SeatsPanelState& state = panel_of(studio);
+    SeatsPanelState& state = *studio.panels.seats;
     const Document& document = studio.session.document();
     heading("What each seat misses");
     if (document.seats.empty()) {
@@ -292,7 +290,7 @@ bool seats_key(Shell& shell, const KeyChord& chord) {
 }
 
 void draw_seats_panel(Studio& studio, bool& open) {
-    SeatsPanelState& state = panel_of(studio);
+    SeatsPanelState& state = *studio.panels.seats;
     const float side = ImGui::GetFrameHeight();
     heading("Seats in the room");
     ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - side);

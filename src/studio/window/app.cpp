@@ -29,7 +29,6 @@
 #include "studio/paint/users_library.h"
 #include "studio/plan_panel.h"
 #include "studio/presenting/presenting.h"
-#include "studio/presenting/vote_mode.h"
 #include "studio/product/new_session.h"
 #include "studio/product/open_session.h"
 #include "studio/projector_control.h"

@@ -10,7 +10,6 @@
 #include "studio/paint/library_panel.h"
 #include "studio/paint/users_library.h"
 #include "studio/presenting/presenting.h"
-#include "studio/presenting/vote_mode.h"
 #include "studio/seats/seats_panel.h"
 #include "studio/window/actions.h"
 #include "studio/window/shell.h"

@@ -17,7 +17,6 @@
 #include "studio/paint/library_panel.h"
 #include "studio/paint/swatches.h"
 #include "studio/presenting/presenting.h"
-#include "studio/presenting/vote_mode.h"
 #include "studio/product/open_session.h"
 #include "studio/seats/seats_panel.h"
 #include "studio/window/actions.h"

@@ -18,7 +18,6 @@
 #include "studio/nudge/nudge_panel.h"
 #include "studio/paint/users_library.h"
 #include "studio/presenting/presenting.h"
-#include "studio/presenting/vote_mode.h"
 #include "studio/results.h"
 #include "studio/seats/seat_maps.h"
 #include "studio/window/first_calibration.h"

@@ -4,9 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include "evaluation/statistics/figures.h"
 #include "evaluation/statistics/pairs.h"
 #include "evaluation/statistics/preference_tests.h"
-#include "evaluation/statistics/tails.h"
 #include "evaluation/statistics/winners.h"
 
 namespace livery {

@@ -12,10 +12,10 @@
 
 #include "core/random.h"
 #include "evaluation/statistics/duel_statistics.h"
+#include "evaluation/statistics/figures.h"
 #include "evaluation/statistics/pairs.h"
 #include "evaluation/statistics/scale_statistics.h"
 #include "evaluation/statistics/table3.h"
-#include "evaluation/statistics/tails.h"
 #include "evaluation/statistics/verdict.h"
 #include "evaluation/statistics/winners.h"
 

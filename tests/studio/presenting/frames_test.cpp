@@ -5,7 +5,7 @@
 
 #include "core/image_io.h"
 #include "core/random.h"
-#include "studio/presenting/frames_folder.h"
+#include "studio/presenting/round_files.h"
 #include "studio/presenting/surround.h"
 #include "support/file_error.h"
 #include "support/temporary_folder.h"

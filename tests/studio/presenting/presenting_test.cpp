@@ -6,7 +6,6 @@
 #include <GLFW/glfw3.h>
 #include <gtest/gtest.h>
 
-#include "studio/presenting/vote_mode.h"
 #include "studio/window/actions.h"
 #include "studio/window/shell.h"
 #include "support/temporary_folder.h"
