@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "ballot/ballot_messages_io.h"
+#include "ballot/ballot_service.h"
 #include "core/error.h"
 #include "support/file_error.h"
 

@@ -4,7 +4,7 @@
 #include <string>
 
 #include "ballot/ballot_guard.h"
-#include "ballot/ballot_messages_io.h"
+#include "ballot/ballot_service.h"
 #include "core/json.h"
 #include "fuzz/fuzz.h"
 
