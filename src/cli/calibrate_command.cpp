@@ -8,6 +8,8 @@
 #include "capture/captures_folder.h"
 #include "cli/capture_options.h"
 #include "cli/command.h"
+#include "cli/render/frame_options.h"
+#include "compensation/lit_pixels.h"
 #include "core/error.h"
 #include "jobs/calibrate/calibration_folder.h"
 #include "jobs/captured_calibration.h"
@@ -44,6 +46,7 @@ Json figures_of(const ColourCalibration& calibration) {
             {"predicted_fraction", calibration.predicted_fraction},
             {"prediction_error_median", calibration.prediction_error_median},
             {"prediction_error_p95", calibration.prediction_error_p95},
+            {"pixel_fractions", json_of(pixel_shares(calibration, {}))},
             {"warnings", calibration.warnings}};
 }
 
@@ -140,6 +143,8 @@ Command calibrate_color_command() {
                     100.0 * calibration.predicted_fraction,
                     100.0 * calibration.prediction_error_median);
             }
+            outcome.text +=
+                "projected: " + text_of(pixel_shares(calibration, {})) + " of the lit pixels\n";
             for (const auto& warning : calibration.warnings)
                 outcome.text += "warning: " + warning + "\n";
             if (!request.camera_to_xyz)

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "cli/render/frame_options.h"
+#include "compensation/lit_pixels.h"
 #include "jobs/calibrate/calibration_folder.h"
 
 namespace livery {
@@ -58,6 +60,7 @@ void report_calibration(const StagedCalibration& run, const std::string& folder,
     figures["valid_fraction"] = calibration.valid_fraction;
     figures["additivity_error"] = calibration.additivity_error;
     figures["condition_p99"] = calibration.condition_p99;
+    figures["pixel_fractions"] = json_of(pixel_shares(calibration, {}));
     figures["warnings"] = calibration.warnings;
     figures["capture_seconds"] = capture_s;
     figures["camera_seconds"] = camera_s;

@@ -80,7 +80,7 @@ Command compensate_command() {
                            {"file", arguments->out}};
         tell(white, outcome);
         outcome.text = fmt::format(
-            "out of gamut {:.1f}% (too bright {:.1f}%, too dark {:.1f}%), no correction {:.1f}%; "
+            "out of gamut {:.1f}% (too bright {:.1f}%, too dark {:.1f}%), left black {:.1f}%; "
             "{}; wrote {}\n",
             100.0 * stats.out_of_gamut_fraction,
             100.0 * stats.clipped_high_fraction,

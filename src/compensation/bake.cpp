@@ -4,12 +4,14 @@
 #include <limits>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include <glm/glm.hpp>
 
 #include "compensation/compensation.h"
 #include "compensation/drive_table.h"
 #include "compensation/gamut.h"
+#include "compensation/lit_pixels.h"
 #include "core/colour.h"
 #include "core/error.h"
 #include "core/mutation.h"
@@ -68,32 +70,20 @@ class PixelMaps {
         return is_valid(static_cast<PixelStatus>(calibration_.status.values[pixel]));
     }
 
+    /// Of a pixel that is not valid: as its neighbours have it.
     PixelMap at(std::size_t pixel) const {
-        const float* u = &calibration_.unmixing.values[pixel * 9];
-        const float* dark = &calibration_.dark.values[pixel * 3];
-        const float* span = &calibration_.span.values[pixel * 3];
+        const PixelCorrection own = correction_of(calibration_, pixel);
         PixelMap map;
         glm::dmat3 separated_from_camera;
-        bool finite = true;
-        for (int row = 0; row < 3; ++row) {
-            finite =
-                finite && std::isfinite(span[row]) && span[row] > 0.0f && std::isfinite(dark[row]);
-            for (int column = 0; column < 3; ++column) {
-                finite = finite && std::isfinite(u[3 * row + column]);
-                separated_from_camera[column][row] =
-                    static_cast<double>(u[3 * row + column]) / static_cast<double>(span[row]);
+        for (std::size_t row = 0; row < 3; ++row) {
+            const auto r = static_cast<int>(row);
+            const auto span = static_cast<double>(own.span[row]);
+            for (std::size_t column = 0; column < 3; ++column) {
+                separated_from_camera[static_cast<int>(column)][r] =
+                    static_cast<double>(own.unmixing[3 * row + column]) / span;
             }
-            map.offset[row] =
-                LIVERY_MUTATED(compensation_black,
-                               -static_cast<double>(dark[row]) / static_cast<double>(span[row]));
-        }
-        if (!finite) {
-            const auto width = static_cast<std::size_t>(calibration_.width);
-            throw std::invalid_argument(
-                "calibration pixel (" + std::to_string(pixel % width) + ", " +
-                std::to_string(pixel / width) + ") is marked valid, but its span is (" +
-                std::to_string(span[0]) + ", " + std::to_string(span[1]) + ", " +
-                std::to_string(span[2]) + ") or a number of it is not finite");
+            map.offset[r] =
+                LIVERY_MUTATED(compensation_black, -static_cast<double>(own.dark[row]) / span);
         }
         map.from_xyz = LIVERY_MUTATED(compensation_solve, separated_from_camera * camera_from_xyz_);
         return map;
@@ -132,6 +122,15 @@ void check_response(const ColourCalibration& calibration) {
                 "response of channel " + std::to_string(k) + " is " + std::to_string(curve[i]) +
                     " at sample " + std::to_string(i) + ", expected rising drives from 0 to 255");
         }
+    }
+}
+
+/// N is linear in the light that the projector sends.
+void fade(CompensationTable& table) {
+    const std::size_t count = table.pixels.size();
+    for (std::size_t plane = 0; plane < 12; ++plane) {
+        float* const values = table.coefficients.data() + plane * count;
+        for (std::size_t i = 0; i < count; ++i) values[i] *= table.light[i];
     }
 }
 
@@ -202,9 +201,9 @@ CompensationTable bake(const ColourCalibration& calibration,
             table.drive_from_n[k] = calibration.response[k].drive_from_n;
         }
     }
-    for (std::size_t i = 0; i < calibration.status.values.size(); ++i) {
-        if (maps.valid(i)) table.pixels.push_back(static_cast<std::uint32_t>(i));
-    }
+    LitPixels lit = lit_pixels(calibration.status);
+    table.pixels = std::move(lit.pixels);
+    table.light = std::move(lit.light);
     const std::size_t count = table.pixels.size();
     table.coefficients.resize(12 * count);
     const glm::dmat3 xyz_from_wanted = xyz_from_working() * design_white_y;
@@ -222,7 +221,9 @@ CompensationTable bake(const ColourCalibration& calibration,
             }
         }
     });
+    // What a pixel could show does not depend on how much of it is sent.
     if (gamut == GamutMapping::preserve) table.gamut = make_gamut_boundary(table);
+    fade(table);
     return table;
 }
 

@@ -46,12 +46,14 @@ struct GamutBoundary {
     double floor_lightness = 0.0;  ///< the one black that all share: 95% of them can show it
 };
 
-/// The calibration baked for one design white: N = A * rgb + b per valid pixel, packed densely.
+/// The calibration baked for one design white: N = light * (A * rgb + b) per lit pixel, packed
+/// densely. Lit are the valid pixels and, faded to black, those around them (lit_pixels.h).
 struct CompensationTable {
     int width = 0, height = 0;
     double design_white_y = 0.0;
-    std::vector<std::uint32_t> pixels;  ///< index of each valid pixel, rising
-    std::vector<float> coefficients;    ///< 12 planes of pixels.size(): A row by row, then b
+    std::vector<std::uint32_t> pixels;  ///< index of each lit pixel, rising
+    std::vector<float> light;           ///< of each: share of the wanted light, over 0, at most 1
+    std::vector<float> coefficients;  ///< 12 planes of pixels.size(): light * A by rows, light * b
     std::array<std::vector<float>, 3> drive_from_n;  ///< equally spaced in N; empty if non-additive
     NonAdditive non_additive;
     GamutBoundary gamut;  ///< empty: what cannot be shown is clipped (GamutMapping::strict)
@@ -65,19 +67,19 @@ CompensationTable bake(const ColourCalibration& calibration,
                        double design_white_y,
                        GamutMapping gamut = GamutMapping::strict);
 
-/// Of what was wanted, before any gamut mapping.
+/// Of what was wanted, before any gamut mapping; at a faded pixel of what is left of it.
 struct CompensationStats {
-    double out_of_gamut_fraction = 0.0;  ///< of the valid pixels with a wanted colour
-    double invalid_fraction = 0.0;       ///< of the pixels with a wanted colour; NaN, Inf too
-    double clipped_high_fraction = 0.0;  ///< of the valid ones: too bright in some channel
-    double clipped_low_fraction = 0.0;   ///< of the valid ones: under the black level in some
+    double out_of_gamut_fraction = 0.0;  ///< of the lit pixels with a wanted colour
+    double invalid_fraction = 0.0;  ///< of the pixels with a wanted colour: black; NaN, Inf too
+    double clipped_high_fraction = 0.0;  ///< of the lit ones: too bright in some channel
+    double clipped_low_fraction = 0.0;   ///< of the lit ones: under the black level in some
 };
 
 /// On all threads, which change no bit of it; the GPU pass's oracle. `wanted` holds R, G, B
 /// (working space) and, if there is a fourth channel, coverage: pixels covered by less than half
-/// are black, as are invalid ones. Colours out of gamut are moved as the table was baked for. NaN,
-/// Inf never propagate. Dither is fixed by pixel position. Throws std::invalid_argument on a wrong
-/// size or channel count.
+/// are black, as are those that are not lit. Colours out of gamut are moved as the table was baked
+/// for. NaN, Inf never propagate. Dither is fixed by pixel position. Throws std::invalid_argument
+/// on a wrong size or channel count.
 Image8 compensate(const CompensationTable& table,
                   const ImageF& wanted_working,
                   CompensationStats* stats = nullptr);

@@ -51,7 +51,8 @@ ImageF shown_of(const CompensationTable& table, const Image<T>& drive, const Pla
             const std::size_t pixel = table.pixels[i];
             glm::vec3 n = places(&drive.values[pixel * static_cast<std::size_t>(drive.channels)]);
             if (!additive) n = n_at_linear(table.non_additive, n, nullptr);
-            // N = A rgb + b, row by row
+            // light N = light (A rgb + b), row by row: what a faded pixel lacks is seen
+            n *= table.light[i];
             glm::dmat3 a;
             glm::dvec3 b;
             for (std::size_t row = 0; row < 3; ++row) {

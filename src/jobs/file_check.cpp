@@ -20,6 +20,7 @@
 #include "capture/patterns_folder.h"
 #include "capture/sphere_folder.h"
 #include "capture/spot_folder.h"
+#include "compensation/lit_pixels.h"
 #include "core/error.h"
 #include "core/image_io.h"
 #include "core/json.h"
@@ -69,6 +70,11 @@ Path file_beside(const Path& folder, const std::string& name) {
     std::error_code error;
     const Path beside = folder / name;
     return std::filesystem::is_regular_file(beside, error) ? beside : Path(name);
+}
+
+void check_calibration(const Path& folder, FileCheck& check) {
+    const PixelShares shares = pixel_shares(read_calibration(folder), {});
+    check.notes.push_back("of the lit pixels " + text_of(shares));
 }
 
 void check_mesh(const Path& file, FileCheck& check) { load_mesh(file, &check.notes); }
@@ -271,7 +277,7 @@ FileKind kind_of_manifest(const Path& manifest, const Progress& progress) {
 
 FileKind kind_of_folder(const Path& folder, const Path& patterns, const Progress& progress) {
     if (is_there(folder / "calibration.json")) {
-        return {"calibration", [](const Path& path, FileCheck&) { read_calibration(path); }};
+        return {"calibration", check_calibration};
     }
     if (is_there(folder / "manifest.json")) {
         return kind_of_manifest(folder / "manifest.json", progress);
@@ -431,8 +437,9 @@ FileKind kind_of(const Path& file, const Path& patterns, const Progress& progres
     const std::string suffix = suffix_of(file);
     if (suffix == ".json") {
         if (file.filename() == "calibration.json") {
-            return {"calibration",
-                    [](const Path& path, FileCheck&) { read_calibration(path.parent_path()); }};
+            return {"calibration", [](const Path& path, FileCheck& check) {
+                        check_calibration(path.parent_path(), check);
+                    }};
         }
         return kind_of_json(file, progress);
     }

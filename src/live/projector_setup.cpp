@@ -30,7 +30,7 @@ namespace livery {
 namespace {
 
 /// Rises when what is kept, or how it is worked out from a calibration, changes.
-constexpr int kSetupVersion = 3;
+constexpr int kSetupVersion = 4;
 
 /// Values one after the other into bytes.
 class Writer {
@@ -142,6 +142,7 @@ void visit_table(Archive& archive, Table& t) {
     archive(t.height);
     archive(t.design_white_y);
     archive(t.pixels);
+    archive(t.light);
     archive(t.coefficients);
     for (auto& curve : t.drive_from_n) archive(curve);
     archive(t.non_additive.grid);

@@ -340,7 +340,9 @@ TEST(Program, GoesFromPatternsToProjectorInputThroughFiles) {
     const Json figures = json_of(solved);
     EXPECT_GT(figures["valid_fraction"].get<double>(), 0.8);
     EXPECT_LT(figures["additivity_error"].get<double>(), 0.02);
-    EXPECT_EQ(livery_run({"check", calibration, captures}).exit_code, 0);
+    const ProgramRun checked = livery_run({"check", calibration, captures});
+    EXPECT_EQ(checked.exit_code, 0);
+    EXPECT_NE(checked.out.find("note: of the lit pixels "), std::string::npos) << checked.out;
 
     // For a product it is that one's: another one is refused, unless somebody insists.
     const auto of_car = [&](std::vector<std::string> words) {
@@ -434,6 +436,15 @@ TEST(Program, GoesFromPatternsToProjectorInputThroughFiles) {
     ASSERT_EQ(uncovered.exit_code, 0) << uncovered.err;
     EXPECT_EQ(json_of(covered)["design_white_mask"], "coverage");
     EXPECT_FALSE(json_of(covered).contains("warnings"));
+    const Json shares = json_of(covered)["pixel_fractions"];
+    double whole = 0.0;
+    for (const char* share : {"measured", "predicted", "interpolated", "faded", "black"}) {
+        whole += shares[share].get<double>();
+    }
+    EXPECT_NEAR(whole, 1.0, 1e-9) << shares.dump();
+    EXPECT_GT(shares["measured"], 0.5) << shares.dump();
+    EXPECT_NEAR(
+        shares["black"].get<double>(), json_of(covered)["invalid_fraction"].get<double>(), 1e-9);
     EXPECT_NE(covered.err.find("coverage"), std::string::npos) << covered.err;
     EXPECT_EQ(json_of(uncovered)["design_white_mask"],
               "every valid pixel: the target has no coverage");
@@ -455,6 +466,7 @@ TEST(Program, GoesFromPatternsToProjectorInputThroughFiles) {
         EXPECT_EQ(json_of(drawn)["design_white_mask"], "the mock-up") << command;
         EXPECT_GT(json_of(drawn)["design_white_pixels"], 1000) << command;
         EXPECT_GT(json_of(drawn)["design_white_y"], 0.0) << command;
+        EXPECT_GT(json_of(drawn)["pixel_fractions"]["measured"], 0.5) << command;
         EXPECT_NE(drawn.err.find("percentile of"), std::string::npos) << drawn.err;
     }
 

@@ -194,11 +194,15 @@ TEST(Compensate, EveryInstructionSetGivesTheSameBits) {
 }
 
 TEST(Compensate, BlackWhereNothingValidIsAskedFor) {
-    World world = make_world(8, 4, 51);
-    world.lit[5] = false;
+    // Column 15 is further from what is known than a border's fade reaches.
+    World world = make_world(16, 4, 51);
+    for (std::size_t i = 0; i < world.lit.size(); ++i) world.lit[i] = i % 16 < 8;
     const CompensationTable table = bake(calibrate(world), 0.3);
     const glm::dvec3 grey(0.3);
     ImageF wanted = picture(world, [&](std::size_t) { return grey; });
+    for (int y = 0; y < 4; ++y) {
+        for (int x = 8; x < 16; ++x) wanted.at(x, y, 3) = x == 15 && y == 0 ? 1.0f : 0.0f;
+    }
     wanted.at(0, 0, 0) = kNan;
     wanted.at(1, 0, 1) = kInf;
     wanted.at(2, 0, 2) = -kInf;
@@ -207,15 +211,15 @@ TEST(Compensate, BlackWhereNothingValidIsAskedFor) {
     wanted.at(6, 0, 3) = 0.5f;
     CompensationStats stats;
     const Image8 out = compensate(table, wanted, &stats);
-    for (int x = 0; x < 6; ++x) {
+    for (const int x : {0, 1, 2, 3, 4, 15}) {
         for (int k = 0; k < 3; ++k) EXPECT_EQ(out.at(x, 0, k), 0) << x;
     }
     for (int k = 0; k < 3; ++k) {
         EXPECT_GT(out.at(6, 0, k), 60);
         EXPECT_GT(out.at(7, 3, k), 60);
     }
-    // 32 pixels less two without coverage; NaN, two Inf and the unlit one are invalid.
-    EXPECT_DOUBLE_EQ(stats.invalid_fraction, 4.0 / 30.0);
+    // 33 pixels less two without coverage; NaN, two Inf and the unlit one are invalid.
+    EXPECT_DOUBLE_EQ(stats.invalid_fraction, 4.0 / 31.0);
     EXPECT_EQ(stats.out_of_gamut_fraction, 0.0);
 }
 

@@ -55,18 +55,39 @@ double worst_difference(const World& world,
 
 TEST(Shown, IsWhatAnAdditiveProjectorShows) {
     World world = make_world(40, 30, 5);
-    world.lit[7] = false;
+    for (std::size_t i = 0; i < world.lit.size(); ++i) world.lit[i] = i % 40 >= 10;
     const CompensationTable table = bake(synthetic::calibrate(world), kWhiteY);
     const Image8 drive = random_drives(world, 9);
     const ImageF shown = shown_by(table, drive);
-    EXPECT_EQ(shown.values[4 * 7 + 3], 0.0f) << "a pixel without a correction";
-    EXPECT_EQ(shown.values[3], 1.0f);
+    EXPECT_EQ(shown.values[4 * 3 + 3], 0.0f) << "a pixel without a correction";
+    EXPECT_EQ(shown.values[4 * 10 + 3], 1.0f);
     // Between two of its 1024 samples a curve is taken to be straight: never off by more than one
     // of them, of a span of up to twice design white
     EXPECT_LT(
         worst_difference(
             world, shown, drive, [&](std::size_t i, glm::dvec3 d) { return world.camera(i, d); }),
         2.0 / 1023.0);
+}
+
+// At a border less is shown than was wanted, by what its light lacks.
+TEST(Shown, TellsWhatAFadedPixelLacks) {
+    World world = make_world(40, 30, 5);
+    for (glm::dmat3& mixing : world.mixing) mixing = world.mixing.front();
+    for (std::size_t i = 0; i < world.lit.size(); ++i) world.lit[i] = i % 40 < 20;
+    const CompensationTable table = bake(synthetic::calibrate(world), kWhiteY);
+    const glm::dvec3 black = world.wanted(0, glm::dvec3(0.0), kWhiteY);
+    const glm::dvec3 asked = world.wanted(0, glm::dvec3(180.0), kWhiteY);
+    const ImageF wanted = synthetic::picture(world, [&](std::size_t) { return asked; });
+    const ImageF shown = shown_by(table, exact_drive(table, wanted));
+    const double expected[] = {1.0, 1.0, 0.72, 0.36, 0.12};
+    for (int k = 0; k < 5; ++k) {
+        const glm::dvec3 here(
+            shown.at(19 + k, 9, 0), shown.at(19 + k, 9, 1), shown.at(19 + k, 9, 2));
+        for (int c = 0; c < 3; ++c) {
+            EXPECT_NEAR((here[c] - black[c]) / (asked[c] - black[c]), expected[k], 0.003) << k;
+        }
+    }
+    EXPECT_EQ(shown.at(24, 9, 3), 0.0f);
 }
 
 /// Asked for what a drive shows, the correction gives that drive, or a level beside it.

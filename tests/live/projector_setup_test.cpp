@@ -92,6 +92,7 @@ void expect_same(const ProjectorSetup& a, const ProjectorSetup& b) {
     EXPECT_EQ(a.calibration->valid_fraction, b.calibration->valid_fraction);
     EXPECT_EQ(a.table->width, b.table->width);
     EXPECT_EQ(a.table->pixels, b.table->pixels);
+    EXPECT_EQ(a.table->light, b.table->light);
     EXPECT_EQ(a.table->coefficients, b.table->coefficients);
     EXPECT_EQ(a.table->drive_from_n, b.table->drive_from_n);
     EXPECT_EQ(a.table->non_additive.start, b.table->non_additive.start);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cli/command.h"
+#include "compensation/lit_pixels.h"
 #include "core/image.h"
 #include "jobs/render/render.h"
 #include "ledger/budget.h"
@@ -20,6 +21,7 @@ struct DesignWhite {
     double percentile = 0.0;  ///< of the pixels that count
     std::string mask;         ///< in words: which pixels count
     std::size_t pixels = 0;   ///< how many of them are valid
+    PixelShares shares;       ///< what becomes of them, valid or not
 };
 
 /// `counted`: non-zero counts; empty: all. `mask` says in words what it holds.
@@ -28,10 +30,11 @@ DesignWhite design_white_of(const ColourCalibration& calibration,
                             const Image8& counted,
                             std::string mask);
 
-/// "design white 0.3, the 20th percentile of 5000 pixels: coverage"
+/// "design white 0.3, the 20th percentile of 5000 pixels: coverage (92.7% measured, ...)"
 std::string text_of(const DesignWhite& white);
-/// design_white_y, design_white_mask and design_white_pixels.
+/// design_white_y, design_white_mask, design_white_pixels and pixel_fractions.
 void tell(const DesignWhite& white, Outcome& outcome);
+Json json_of(const PixelShares& shares);
 
 struct FrameArguments {
     std::string product = "car", unit, look = "solid-red", calibration, camera, eye;

@@ -32,8 +32,8 @@ std::vector<GradedFigure> grade_figures(const ColourCalibration& calibration) {
                      calibration.valid_fraction,
                      0.95,
                      0.85,
-                     "Measured pixels, of all that the projector lights. The others stay "
-                     "black unless they can be predicted.",
+                     "Measured pixels, of all that the projector lights. The others are "
+                     "predicted, follow their neighbours in small gaps, or fade to black.",
                      "Move the camera nearer to the projector, or take more photographs."));
     if (calibration.predicted_fraction > 0.0) {
         figures.push_back({"Predicted pixels",
