@@ -123,7 +123,7 @@ PairGeometry from_boards(const PairGeometryRequest& request, const Progress& pro
                     "size",
                     fmt::format("photographs of {}x{} px", size.width, size.height),
                     fmt::format("the {}x{} px of the other poses", camera.width, camera.height));
-            search = search_sight(folder.captures.geometry, map, request.board);
+            search = search_sight(folder.captures.geometry, map, request.board, progress);
         } catch (const Refused& refused) {
             search.reason = refused.why() + "; " + refused.fix();
         }
@@ -151,9 +151,13 @@ PairGeometry from_boards(const PairGeometryRequest& request, const Progress& pro
 
     // The worst pose is left out as long as the others foretell it badly.
     CheckedPair chosen;
+    double done = 0.8;
     for (;;) {
-        progress.update(0.9, "fitting lenses and poses");
-        chosen = solve_leaving_each_out(sights, camera, projector, progress);
+        progress.update(done, "fitting lenses and poses");
+        // Half of what is left, since nobody knows how often a pose is left out.
+        const double then = 0.5 * (1.0 + done);
+        chosen = solve_leaving_each_out(sights, camera, projector, progress.part(done, then));
+        done = then;
         const auto worst = static_cast<std::size_t>(
             std::max_element(chosen.held_out_px.begin(), chosen.held_out_px.end()) -
             chosen.held_out_px.begin());

@@ -1,7 +1,10 @@
 // Lenses and their places from boards: against known ones, and real photographs beside OpenCV.
+#include <atomic>
 #include <cmath>
 #include <cstdio>
 #include <random>
+#include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <opencv2/calib3d.hpp>
@@ -217,6 +220,29 @@ TEST(Geometry, RealPhotographsForetellAPoseLeftOutAsWellAsOpenCV) {
         std::printf("left out: %.3f px\n", rms);
         EXPECT_LT(rms, 0.7);
     }
+}
+
+// Ctrl-C in the longest fit: the one of all poses, then those without each of them.
+TEST(Geometry, AFitOfTwentyPosesStopsWhenAsked) {
+    std::vector<glm::dvec3> turns;
+    for (std::size_t k = 0; k < 20; ++k) {
+        turns.push_back(kTurns[k % kTurns.size()] + 0.004 * glm::dvec3(double(k), 0, -double(k)));
+    }
+    const auto sights = board_sights(pair_truth(), turns, 0.1, 3);
+    // Within the first fit of all, which reports nothing
+    std::atomic<bool> stop = true;
+    EXPECT_THROW(solve_pair(sights, kCamera, kProjector, nullptr, {nullptr, &stop}), Cancelled);
+    // Within the fit without the second pose: neither is that finished nor another begun
+    std::vector<std::string> stages;
+    stop = false;
+    const auto report = [&](double, std::string_view stage) {
+        stages.emplace_back(stage);
+        stop = stages.size() == 2;
+    };
+    EXPECT_THROW(solve_leaving_each_out(sights, kCamera, kProjector, {report, &stop}), Cancelled);
+    EXPECT_EQ(
+        stages,
+        (std::vector<std::string>{"fitting without pose 1 of 20", "fitting without pose 2 of 20"}));
 }
 
 }  // namespace

@@ -143,7 +143,8 @@ std::string why_not_found(const Image8& white, const Board& board, std::size_t f
 
 BoardMovement movement_during_code(const std::vector<RoledPhotograph>& photographs,
                                    const std::vector<glm::dvec2>& corners_px,
-                                   int reach_px) {
+                                   int reach_px,
+                                   const Progress& progress) {
     // The search gives a corner back as it came where it finds none: begun beside the place, that
     // is told from a corner that stayed.
     constexpr glm::dvec2 kBeside(0.375, 0.25);
@@ -153,6 +154,7 @@ BoardMovement movement_during_code(const std::vector<RoledPhotograph>& photograp
     for (const RoledPhotograph& one : photographs) {
         const ImageF* inverse = image_of(photographs, one.role + "-inverse");
         if (inverse == nullptr) continue;
+        progress.check_stop();
         ImageF sum = one.photograph.image;
         for (std::size_t i = 0; i < sum.values.size(); ++i) sum.values[i] += inverse->values[i];
         const auto there = refined_corners(grey_for_corners(sum), starts, reach_px);

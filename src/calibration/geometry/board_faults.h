@@ -19,10 +19,11 @@ struct BoardMovement {
 };
 
 /// The corners are looked for within `reach_px` of `corners_px`, in the sum of each pair of
-/// stripes; corners that are not there count as `reach_px` away.
+/// stripes; corners that are not there count as `reach_px` away. Throws Cancelled between pairs.
 BoardMovement movement_during_code(const std::vector<RoledPhotograph>& photographs,
                                    const std::vector<glm::dvec2>& corners_px,
-                                   int reach_px);
+                                   int reach_px,
+                                   const Progress& progress);
 
 /// Width of the sharpest edges in a picture, about 10% to 90%, pixels: the span around the steepest
 /// places over their gradient. 0 where the picture is even.

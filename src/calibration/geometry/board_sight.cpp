@@ -86,11 +86,14 @@ Corners carried_to_projector(const ImageF& projector_px, const Corners& corners,
 
 SightSearch search_sight(const std::vector<RoledPhotograph>& photographs,
                          const ImageF& projector_px,
-                         const Board& board) {
+                         const Board& board,
+                         const Progress& progress) {
     check_board(board);
+    progress.check_stop();
     SightSearch result;
     const Image8 white = grey_for_corners(white_of(photographs));
     const Corners corners = found_corners(white, board);
+    progress.check_stop();
     const std::size_t found = count_of(corners);
     if (found < kLeastCorners && found < static_cast<std::size_t>(board.columns * board.rows)) {
         result.reason = why_not_found(white, board, found);
@@ -112,7 +115,7 @@ SightSearch search_sight(const std::vector<RoledPhotograph>& photographs,
     }
     const int reach = std::clamp(static_cast<int>(spacing / 3.0), 2, 15);
     const BoardMovement moved =
-        movement_during_code(photographs, refined_corners(white, seen, reach), reach);
+        movement_during_code(photographs, refined_corners(white, seen, reach), reach, progress);
     result.moved_px = moved.px;
     if (moved.px > kMoved_px) {
         result.reason = fmt::format(

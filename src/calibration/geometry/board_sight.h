@@ -9,6 +9,7 @@
 #include "calibration/correspondence/gray_code.h"
 #include "calibration/geometry/board.h"
 #include "calibration/geometry/solve_pair.h"
+#include "core/progress.h"
 
 namespace livery {
 
@@ -26,9 +27,10 @@ struct SightSearch {
 /// `photographs`: of one channel and one size, among them `white` and pairs of stripes;
 /// `projector_px`: what was decoded of them (CameraToProjector). The corners are looked for in
 /// white and once more in the sum of each pair of stripes, which shows what white shows. Throws as
-/// find_board(), and FileError where there is no white picture.
+/// find_board(), FileError where there is no white picture, Cancelled between two of these steps.
 SightSearch search_sight(const std::vector<RoledPhotograph>& photographs,
                          const ImageF& projector_px,
-                         const Board& board);
+                         const Board& board,
+                         const Progress& progress = {});
 
 }  // namespace livery

@@ -20,6 +20,8 @@ CheckedPair solve_leaving_each_out(std::span<const BoardSight> sights,
     result.solution = solve_pair(sights, camera, projector, nullptr, progress);
     double squares = 0.0;
     for (std::size_t out = 0; out < sights.size(); ++out) {
+        progress.update(static_cast<double>(out) / static_cast<double>(sights.size()),
+                        fmt::format("fitting without pose {} of {}", out + 1, sights.size()));
         std::vector<BoardSight> rest(sights.begin(), sights.end());
         PairSolution start = result.solution;
         const auto place = static_cast<std::ptrdiff_t>(out);

@@ -15,7 +15,8 @@ struct CheckedPair {
 };
 
 /// solve_pair(), then once more without each sight (leave-one-out). Throws Refused as solve_pair(),
-/// for fewer than four sights, and where the others do not determine the lenses.
+/// for fewer than four sights, and where the others do not determine the lenses. Cancelled ends it
+/// at the next iteration of the fit it is in.
 CheckedPair solve_leaving_each_out(std::span<const BoardSight> sights,
                                    PictureSize camera,
                                    PictureSize projector,
