@@ -120,8 +120,9 @@ void draw_calibration_in_use(const ColourCalibration& calibration, bool other_pr
     dim_text(other_product                ? "The figures below are of that product's mock-up."
              : grade.grade == Grade::good ? "Every figure is within its good range."
                                           : fmt::format("{}. {}", grade.reason, grade.fix));
-    fact("Made", readable_time(calibration.created));
-    fact("Id", calibration.id.substr(0, 8), calibration.id);
+    fact("Made",
+         readable_time(calibration.created) + " · " + calibration.id.substr(0, 8),
+         calibration.id);
     fact("With", calibration.made_with);
     fact("Mode", calibration.mode);
     fact("Colours", calibration.xyz_origin);

@@ -1,7 +1,8 @@
 // Photographs every part of the operator's window, for the documentation and for looking at it:
-//     desktop_screenshots FOLDER [vote|seats|report]
+//     desktop_screenshots FOLDER [vote|seats|report|calibrate]
 // writes NAME-1280.png at 1280x800 and NAME-3840.png at 3840x2160; with "vote" those of a presented
-// vote alone, with "seats" those of the room, with "report" that of a problem, at 1280x800.
+// vote alone, with "seats" those of the room, with "report" that of a problem, with "calibrate"
+// those of calibrating, at 1280x800.
 
 #include <cctype>
 #include <cstdio>
@@ -228,6 +229,22 @@ class Photographer {
         wait_for_rest();
     }
 
+    /// The panel, a calibration under way, the mock-up's lines and the steps with a camera.
+    void take_calibrations() {
+        program().click("projector-monitor");
+        settle();
+        program().click("monitor:2");
+        program().click("part:body");
+        wait_for_rest();
+        program().click("tab:Calibrate");
+        program().move_away();
+        wait_for_rest();
+        take("tab-calibrate");
+        take_calibrating();
+        take_nudge();
+        take_capture();
+    }
+
   private:
     StudioProgram& program() { return *program_; }
 
@@ -383,8 +400,9 @@ class Photographer {
 int main(int argc, char** argv) {
     const std::string only = argc == 3 ? argv[2] : "";
     if (argc < 2 || argc > 3 ||
-        (argc == 3 && only != "vote" && only != "seats" && only != "report")) {
-        std::fputs("desktop_screenshots FOLDER [vote|seats|report]\n", stderr);
+        (argc == 3 && only != "vote" && only != "seats" && only != "report" &&
+         only != "calibrate")) {
+        std::fputs("desktop_screenshots FOLDER [vote|seats|report|calibrate]\n", stderr);
         return 2;
     }
     try {
@@ -397,6 +415,8 @@ int main(int argc, char** argv) {
             at_1280().take_seats();
         } else if (only == "report") {
             at_1280().take_report();
+        } else if (only == "calibrate") {
+            at_1280().take_calibrations();
         } else {
             at_1280().take_all();
             livery::Photographer(folder, {3840, 2160}, 2.0).take_all();
