@@ -224,8 +224,8 @@ void FragmentInputs::solve_exchange(const Scene& scene,
     }
     const auto environment =
         find_pass(plan, PassKind::environment_irradiance) ? scene.environment : nullptr;
-    const bool same_light =
-        !made.direct.empty() && made.lights == scene.lights && made.environment == environment;
+    const bool same_light = !made.direct.on_diffuser.empty() && made.lights == scene.lights &&
+                            made.environment == environment;
     const int bounces = rays_of(plan.levels).bounces;
     const bool same_paints =
         same_relief(made.artwork, scene.artwork) && std::equal(made.paints.begin(),
@@ -237,14 +237,26 @@ void FragmentInputs::solve_exchange(const Scene& scene,
                                  enough(made.bounces, bounces));
     clock.run(PassKind::interreflection, !stands, [&] {
         made.nodes = shared_exchange_->of(mesh_, tracer_, progress);
-        if (!same_light) {
-            made.direct = direct_at_nodes(
-                mesh_, tracer_, *made.nodes, scene.lights, environment.get(), filtered_, progress);
+        if (!same_paints) {
+            made.paints.clear();  // a stop leaves neither
+            made.reflectance =
+                reflectance_at_nodes(scene, made.nodes->nodes, made.nodes->directions);
+        }
+        const NodeReflectance& reflectance = made.reflectance;
+        if (!same_light || made.lobes != reflectance.lobes) {
+            made.direct = direct_light_at_nodes(mesh_,
+                                                tracer_,
+                                                *made.nodes,
+                                                scene.lights,
+                                                environment.get(),
+                                                filtered_,
+                                                reflectance.lobes,
+                                                progress);
+            made.lobes = reflectance.lobes;
             made.lights = scene.lights;
             made.environment = environment;
         }
-        made.at_nodes = exchanged_at_nodes(
-            *made.nodes, made.direct, albedo_at_nodes(scene, made.nodes->nodes), bounces);
+        made.at_nodes = exchanged_at_nodes(*made.nodes, made.direct, reflectance, bounces);
         made.on_diffuser = at_fragments(mesh_, *map_, made.nodes->nodes, made.at_nodes.on_diffuser);
         made.paints = scene.part_materials;
         made.artwork = scene.artwork;

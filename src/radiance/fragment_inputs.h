@@ -180,7 +180,9 @@ class FragmentInputs {
         std::shared_ptr<const NodeExchange> nodes;
         std::vector<DirectionalLight> lights;
         std::shared_ptr<const Environment> environment;
-        std::vector<glm::vec3> direct;  ///< at the nodes; empty: not solved
+        DirectLight direct;           ///< at the nodes; empty: not solved
+        std::vector<bool> lobes;      ///< parts that it was solved for by ray
+        NodeReflectance reflectance;  ///< of paints and artwork
         std::vector<Material> paints;
         std::vector<PartArtwork> artwork;
         int bounces = 0;

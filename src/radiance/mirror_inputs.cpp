@@ -80,10 +80,10 @@ void MirrorInputs::clear() {
 }
 
 void MirrorInputs::hide_behind(std::shared_ptr<const NodeExchange> nodes,
-                               std::span<const glm::vec3> sent,
+                               const NodeLight& sent,
                                int version) {
     product_nodes_ = std::move(nodes);
-    product_sent_ = sent;
+    product_sent_ = &sent;
     if (product_version_ == version) return;
     product_version_ = version;
     // A draft knows nothing of what hides the environment
@@ -125,7 +125,7 @@ void MirrorInputs::trace(const Light& light,
         mesh_, tracer_, *map_, runs, light.eye_mm, parts_of(layers), progress, *visibility_);
     if (!product_nodes_) return;
     hits_ = find_mirror_hits(
-        mesh_, tracer_, *map_, light.eye_mm, *visibility_, product_nodes_->nodes, progress);
+        mesh_, tracer_, *map_, light.eye_mm, *visibility_, *product_nodes_, progress);
 }
 
 std::vector<MirrorInputs::Texels> MirrorInputs::texels_for(const LayersOfParts& layers) {

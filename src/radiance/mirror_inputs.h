@@ -47,9 +47,7 @@ class MirrorInputs {
     /// What each node of the product sends, where it hides the environment; null: it is black. Of
     /// another `version` than before, what was solved is missing() for who wants it, and stands for
     /// who does not ask.
-    void hide_behind(std::shared_ptr<const NodeExchange> nodes,
-                     std::span<const glm::vec3> sent,
-                     int version);
+    void hide_behind(std::shared_ptr<const NodeExchange> nodes, const NodeLight& sent, int version);
 
     /// Another map of the same fragments: nothing that was solved stands.
     void use(const SurfaceMap& map);
@@ -149,7 +147,7 @@ class MirrorInputs {
     LayersOfParts solved_;  ///< of each part, in that light
     LayersOfParts newest_;  ///< of these, behind what the product sends now
     std::shared_ptr<const NodeExchange> product_nodes_;
-    std::span<const glm::vec3> product_sent_;
+    const NodeLight* product_sent_ = nullptr;
     int product_version_ = 0;
     std::optional<MirrorHits> hits_;  ///< of what visibility_ has traced; none: not asked for yet
     float unit_ = 1.0f;

@@ -299,6 +299,30 @@ void Tracer::occluded(std::span<const TraceRay> rays,
     });
 }
 
+namespace {
+
+/// None of a triangle without area.
+glm::vec3 geometric_normal(const Mesh& mesh, std::uint32_t triangle) {
+    const glm::uvec3 corner = mesh.triangles[triangle];
+    const glm::vec3 a = mesh.positions_mm[corner.x];
+    const glm::vec3 ab = mesh.positions_mm[corner.y] - a, ac = mesh.positions_mm[corner.z] - a;
+    const glm::dvec3 across = glm::cross(glm::dvec3(ab), glm::dvec3(ac));
+    const double twice_area = glm::length(across);
+    return twice_area > 0.0 ? glm::vec3(across / twice_area) : glm::vec3(0.0f);
+}
+
+}  // namespace
+
+glm::vec3 shading_normal(const Mesh& mesh, const Hit& hit) {
+    const glm::uvec3 corner = mesh.triangles[hit.triangle];
+    const float v = hit.barycentric.x, w = hit.barycentric.y, u = 1.0f - v - w;
+    const glm::vec3 normal =
+        u * mesh.normals[corner.x] + v * mesh.normals[corner.y] + w * mesh.normals[corner.z];
+    const float length = glm::length(normal);
+    // Opposite vertex normals cancel halfway: the triangle's own normal is the answer there.
+    return length > 1e-6f ? normal / length : geometric_normal(mesh, hit.triangle);
+}
+
 SurfacePoint surface_point(const Mesh& mesh, const Hit& hit) {
     check_argument(hit.valid() && hit.triangle < mesh.triangles.size(),
                    "surface_point: the hit is not on this mesh");
@@ -313,14 +337,9 @@ SurfacePoint surface_point(const Mesh& mesh, const Hit& hit) {
     SurfacePoint point;
     // From a corner and two edges: exact on the plane of a far-away triangle to its own size.
     point.position_mm = a + v * ab + w * ac;
-    const glm::dvec3 across = glm::cross(glm::dvec3(ab), glm::dvec3(ac));
-    const double twice_area = glm::length(across);
-    if (twice_area > 0.0) point.geometric_normal = glm::vec3(across / twice_area);
+    point.geometric_normal = geometric_normal(mesh, hit.triangle);
 
-    // Opposite vertex normals cancel halfway: the triangle's own normal is the answer there.
-    const glm::vec3 normal = blend(mesh.normals);
-    const float length = glm::length(normal);
-    point.normal = length > 1e-6f ? normal / length : point.geometric_normal;
+    point.normal = shading_normal(mesh, hit);
 
     // The tangent is made orthogonal to the interpolated normal again.
     const glm::vec4 tangent = blend(mesh.tangents);

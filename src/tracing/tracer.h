@@ -75,6 +75,8 @@ class Tracer {
 };
 
 SurfacePoint surface_point(const Mesh& mesh, const Hit& hit);
+/// Its normal alone.
+glm::vec3 shading_normal(const Mesh& mesh, const Hit& hit);
 
 /// Whether a ray meets the back of the triangle, or its edge.
 bool sees_back(const Mesh& mesh, const Hit& hit, const glm::vec3& direction);

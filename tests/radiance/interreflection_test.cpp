@@ -1,11 +1,16 @@
 #include "radiance/light/interreflection.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <numbers>
 
 #include <gtest/gtest.h>
 
+#include "appearance/paint_bsdf.h"
 #include "gl/context.h"
 #include "radiance/renderer.h"
+#include "reference/path_tracer.h"
 #include "support/shading_devices.h"
 #include "support/small_meshes.h"
 #include "tracing/ray_counters.h"
@@ -27,7 +32,7 @@ Scene white_scene(Mesh mesh, double albedo) {
 /// Where light on a white diffuser ends up, all bounces followed.
 struct Solved {
     NodeExchange exchange;
-    std::vector<glm::vec3> direct, exchanged;
+    std::vector<glm::vec3> direct, exchanged;  ///< on a diffuser
 };
 Solved solve(const Scene& scene, int bounces) {
     const Tracer tracer(scene.product->mesh);
@@ -36,16 +41,18 @@ Solved solve(const Scene& scene, int bounces) {
     FilteredEnvironment filtered;
     if (scene.environment)
         filtered = filter_environment(*scene.environment, {false, true, true, false});
-    solved.direct = direct_at_nodes(scene.product->mesh,
-                                    tracer,
-                                    solved.exchange,
-                                    scene.lights,
-                                    scene.environment.get(),
-                                    filtered);
+    const NodeReflectance reflectance =
+        reflectance_at_nodes(scene, solved.exchange.nodes, solved.exchange.directions);
+    DirectLight direct = direct_light_at_nodes(scene.product->mesh,
+                                               tracer,
+                                               solved.exchange,
+                                               scene.lights,
+                                               scene.environment.get(),
+                                               filtered,
+                                               reflectance.lobes);
     solved.exchanged =
-        exchanged_at_nodes(
-            solved.exchange, solved.direct, albedo_at_nodes(scene, solved.exchange.nodes), bounces)
-            .on_diffuser;
+        exchanged_at_nodes(solved.exchange, direct, reflectance, bounces).on_diffuser;
+    solved.direct = std::move(direct.on_diffuser);
     return solved;
 }
 
@@ -95,6 +102,64 @@ TEST(Radiosity, OfAGrooveIsTheClosedForm) {
         // 20 nodes and more of 64 rays each: 2%; the grid reaches .05 to both sides: 3%
         const double expected = place.radiance / 0.5 - direct;
         EXPECT_NEAR(sum / count, expected, 0.05 * expected) << place.at;
+    }
+}
+
+TEST(NodeReflectance, ALobeSendsAsMuchAsItReturnsAndMostOfItWhereItMirrors) {
+    const NodeDirections directions(64);
+    Material mirror;
+    mirror.model = ReflectanceModel::ggx;
+    mirror.diffuse = glm::dvec3(0.0);
+    mirror.f0 = {0.9, 0.6, 0.3};
+    for (const double alpha : {0.02, 0.1, 0.3}) {
+        mirror.alpha = glm::dvec2(alpha);
+        const RayMatrix matrix(mirror, directions);
+        std::vector<glm::vec3> comes(64, glm::vec3(1.0f)), sent(64);
+        matrix.send(comes, sent);
+        for (std::size_t k = 0; k < sent.size(); ++k) {
+            const glm::vec3 of_one =
+                environment_weights(bsdf_of(mirror), directions.directions()[k].z).specular;
+            for (int c = 0; c < 3; ++c) EXPECT_NEAR(sent[k][c], of_one[c], 1e-3f) << alpha;
+        }
+        for (std::size_t from = 0; from < comes.size(); ++from) {
+            std::fill(comes.begin(), comes.end(), glm::vec3(0.0f));
+            comes[from] = glm::vec3(1.0f);
+            matrix.send(comes, sent);
+            const glm::vec3 in = directions.directions()[from];
+            const auto brightest = std::max_element(
+                sent.begin(), sent.end(), [](const auto& a, const auto& b) { return a.x < b.x; });
+            const glm::vec3 out =
+                directions.directions()[static_cast<std::size_t>(brightest - sent.begin())];
+            // Directions are .25 apart, twice that toward the horizon, where lobes lean besides
+            if (in.z < 0.3f) continue;
+            EXPECT_LT(glm::distance(out, glm::vec3(-in.x, -in.y, in.z)), 0.5f) << alpha;
+        }
+    }
+}
+
+TEST(NodeReflectance, ADiffuserSendsEvenly) {
+    Scene scene = white_scene(open_box(), 0.7);
+    const NodeExchange exchange =
+        solve_node_exchange(scene.product->mesh, Tracer(scene.product->mesh));
+    const NodeReflectance reflectance =
+        reflectance_at_nodes(scene, exchange.nodes, exchange.directions);
+    EXPECT_TRUE(reflectance.matrices.empty());
+    EXPECT_EQ(dark_nodes(exchange.nodes, reflectance.lobes, exchange.rays()).values.size(),
+              exchange.nodes.size());
+}
+
+TEST(NodeExchange, ARayTowardAPlaceIsTheOneThatIsSeenFromThere) {
+    const Mesh mesh = open_box();
+    const NodeExchange exchange = solve_node_exchange(mesh, Tracer(mesh));
+    std::vector<glm::vec3> turned(exchange.rays());
+    for (std::uint32_t i = 0; i < exchange.nodes.size(); i += 97) {
+        exchange.directions_of(i, turned);
+        const glm::vec3 n = exchange.nodes.normal(i);
+        for (std::size_t k = 0; k < turned.size(); ++k) {
+            EXPECT_GT(glm::dot(turned[k], n), 0.0f);
+            EXPECT_EQ(exchange.ray_toward(i, turned[k], n),
+                      ray_of_node(i, static_cast<std::uint8_t>(k)));
+        }
     }
 }
 
@@ -313,6 +378,57 @@ TEST_P(Interreflection, AMirrorShowsWhatALampLightsWhereNoEnvironmentIs) {
     // A draft mirrors no parts, and a lamp alone calls for nothing that one would
     const FramePlan draft = plan_frame(scene, Quality::draft, FrameStage::radiance);
     EXPECT_EQ(find_pass(draft, PassKind::mirrored_environment), nullptr);
+}
+
+TEST_P(Interreflection, AMirrorShowsWhatAnotherMirrors) {
+    // Both walls are mirrors as well. From the eye by the floor and the left wall goes a path to
+    // the upper sky, which alone is bright: as a diffuser the wall would be far darker.
+    const HeadlessContext context(GlDevice::automatic);
+    Scene scene = mirror_between_walls();
+    for (std::size_t part : {1u, 2u}) {
+        scene.part_materials[part] = scene.part_materials[0];
+        scene.part_materials[part].alpha = glm::dvec2(0.2);
+        scene.part_materials[part].f0 = {0.9, 0.6, 0.3};
+    }
+    auto environment = std::make_shared<Environment>(*scene.environment);
+    for (int y = 0; y < 16; ++y) {
+        const float height = std::max(
+            0.0f, std::cos(std::numbers::pi_v<float> * (static_cast<float>(y) + 0.5f) / 16.0f));
+        for (int x = 0; x < 32; ++x) {
+            for (int c = 0; c < 3; ++c) {
+                environment->radiance_working.at(x, y, c) = 0.2f + 4.0f * height * height;
+            }
+        }
+    }
+    scene.environment = environment;
+    scene.eye_in_world_mm = {6.0, 12.0, 0.0};
+    const View view = look_at(scene.eye_in_world_mm, {-0.6, 0.0, 0.0}, 0.02, 16, 16);
+    const auto mean_of = [](const ImageF& picture) {
+        glm::vec3 sum(0.0f);
+        for (std::size_t i = 0; i < picture.pixel_count(); ++i) {
+            const float* v = picture.values.data() + 4 * i;
+            sum += glm::vec3(v[0], v[1], v[2]);
+        }
+        return sum / static_cast<float>(picture.pixel_count());
+    };
+    ReferenceOptions options;
+    options.samples_per_pixel = 256;
+    const glm::vec3 truth = mean_of(trace_reference(scene, view, options).radiance_working);
+    for (const Quality quality : {Quality::normal, Quality::high}) {
+        RadianceRenderer renderer(
+            std::make_shared<const FrameGeometry>(scene.product, view), false, GetParam());
+        FramePlan plan = plan_frame(scene, quality, FrameStage::radiance);
+        renderer.render(scene, plan);
+        const glm::vec3 mirrored = mean_of(renderer.read_back());
+        for (int c = 0; c < 3; ++c) {
+            std::printf("    %s, channel %d: %.4f, truth %.4f\n",
+                        to_string(quality).data(),
+                        c,
+                        static_cast<double>(mirrored[c]),
+                        static_cast<double>(truth[c]));
+            EXPECT_NEAR(mirrored[c], truth[c], 0.1f * truth[c]);
+        }
+    }
 }
 
 TEST_P(Interreflection, AnotherWallIsMirroredAsIfItHadBeenThereAllAlong) {

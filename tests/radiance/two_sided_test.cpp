@@ -132,5 +132,38 @@ TEST(TwoSidedReference, IsWhatDrawnLevelsComeNearTo) {
     EXPECT_LT(differs, 0.15);
 }
 
+TEST(TwoSidedReference, MirrorsWithinOneAnotherComeNearToo) {
+    HeadlessContext context(tested_gl());
+    Material gold = paint_of(ReflectanceModel::ggx, 0.3);
+    gold.diffuse = glm::dvec3(0.0);
+    gold.f0 = {0.9, 0.6, 0.3};
+    const Scene scene = scene_of_box(true, gold);
+    ReferenceOptions options;
+    options.samples_per_pixel = 1024;
+    options.bounces = 8;
+    const ImageF truth = trace_reference(scene, into_box(), options).radiance_working;
+    RadianceRenderer renderer(std::make_shared<const FrameGeometry>(scene.product, into_box()),
+                              false,
+                              ShadingDevice::processor);
+    FramePlan its_plan = plan_frame(scene, Quality::normal, FrameStage::radiance);
+    renderer.render(scene, its_plan);
+    const ImageF drawn = renderer.read_back();
+    const double differs = difference(truth, drawn);
+    // By how much a pixel differs from both of those beside it: columns share out rays
+    std::vector<float> stripes;
+    for (int y = 0; y < drawn.height; ++y) {
+        for (int x = 1; x + 1 < drawn.width; ++x) {
+            const float* v = &drawn.values[4 * static_cast<std::size_t>(y * drawn.width + x)];
+            if (v[-1] < 1.0f || v[3] < 1.0f || v[7] < 1.0f) continue;
+            stripes.push_back(std::abs(2.0f * v[1] / (v[-3] + v[5]) - 1.0f));
+        }
+    }
+    std::sort(stripes.begin(), stripes.end());
+    const double striped = stripes[3 * stripes.size() / 4];
+    std::printf("    normal beside the tracer: %.4f, pixel beside pixel: %.4f\n", differs, striped);
+    EXPECT_LT(differs, 0.2);
+    EXPECT_LT(striped, 0.05);
+}
+
 }  // namespace
 }  // namespace livery

@@ -374,6 +374,23 @@ glm::vec3 ExchangeNodes::ray_origin_mm(const Mesh& mesh, std::size_t node) const
     return off_surface(mesh, points.within[point], place, points.normals[point]);
 }
 
+std::uint32_t ExchangeNodes::around(const Mesh& mesh,
+                                    std::uint32_t triangle,
+                                    const glm::vec2& barycentric,
+                                    bool behind,
+                                    float chance) const {
+    for (const ExchangePoints::Share& share : points.around(mesh, triangle, barycentric)) {
+        const std::uint32_t point = behind ? points.back[share.index] : share.index;
+        for (std::size_t k = first[point]; k < first[point + 1]; ++k) {
+            chance -= share.weight * nearby[k].weight;
+            if (chance < 0.0f) return nearby[k].index;
+        }
+    }
+    // What rounding has left
+    const std::uint32_t corner = mesh.triangles[triangle].x;
+    return node_of[behind ? points.back[corner] : corner];
+}
+
 std::vector<glm::vec3> ExchangeNodes::at_points(const std::vector<glm::vec3>& at_nodes) const {
     std::vector<glm::vec3> values(points.size());
     parallel_for(values.size(), 4096, [&](std::size_t begin, std::size_t end) {

@@ -69,6 +69,14 @@ struct ExchangeNodes {
     /// they would start within what meets there.
     glm::vec3 ray_origin_mm(const Mesh& mesh, std::size_t node) const;
 
+    /// One of the nodes around a place of a triangle, or of its back: as often as it weighs there
+    /// for a `chance` in [0, 1).
+    std::uint32_t around(const Mesh& mesh,
+                         std::uint32_t triangle,
+                         const glm::vec2& barycentric,
+                         bool behind,
+                         float chance) const;
+
     /// Of each point, from a value of each node.
     std::vector<glm::vec3> at_points(const std::vector<glm::vec3>& at_nodes) const;
     /// Interpolation blurs: values of which it gives `at_nodes` where they lie, but for the fourth

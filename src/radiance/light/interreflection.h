@@ -13,6 +13,7 @@
 #include "core/progress.h"
 #include "radiance/light/environment_filter.h"
 #include "radiance/light/exchange_nodes.h"
+#include "radiance/light/node_reflectance.h"
 #include "radiance/surface_map.h"
 #include "scene/scene.h"
 #include "tracing/tracer.h"
@@ -23,12 +24,25 @@ namespace livery {
 /// is painted and lit with.
 struct NodeExchange {
     ExchangeNodes nodes;
-    int rays = 0;                        ///< of a node, 64 at most
+    NodeDirections directions;           ///< of a node's rays
+    std::vector<glm::vec3> x_axes;       ///< of each node's frame; z is its normal
     std::vector<std::uint64_t> blocked;  ///< bit k: direction k meets the product
-    /// Nodes that each one sees from their outside, one a ray, from `first` on.
-    std::vector<std::uint32_t> first, seen;
+    /// What each node sees of others from their outside, from `first` on: by which of its rays, and
+    /// which of theirs comes along it.
+    std::vector<std::uint32_t> first;
+    std::vector<std::uint8_t> by;
+    std::vector<std::uint32_t> seen;
     /// kLampRays of each node, from all over what it stands for; empty: they start at its place.
     std::vector<glm::vec3> lamp_origins_mm;
+
+    std::size_t rays() const { return directions.count(); }
+    /// In the world, as many as rays.
+    void directions_of(std::size_t node, std::span<glm::vec3> turned) const;
+    /// Which of its rays a node sends along `toward`, from a place where the normal is another:
+    /// that which shows in a mirror what that place does.
+    std::uint32_t ray_toward(std::uint32_t node,
+                             const glm::vec3& toward,
+                             const glm::vec3& normal) const;
 };
 /// Rays of a node toward each lamp.
 inline constexpr std::size_t kLampRays = 8;
@@ -72,7 +86,8 @@ glm::vec3 entering_of_lamp(const EnteredMedium& medium, float cosine, float curv
 
 /// What a white diffuser at each node sends under the lights and the environment (null: none), as
 /// far as the product does not hide them. Working space, exposure not included. With a `medium`
-/// what enters it there instead.
+/// what enters it there instead. `along`, if there is any, takes what comes along each node's rays
+/// where it has room for that: lamps as wide as rays are apart.
 std::vector<glm::vec3> direct_at_nodes(const Mesh& mesh,
                                        const Tracer& tracer,
                                        const NodeExchange& exchange,
@@ -80,23 +95,37 @@ std::vector<glm::vec3> direct_at_nodes(const Mesh& mesh,
                                        const Environment* environment,
                                        const FilteredEnvironment& filtered,
                                        const Progress& progress = {},
-                                       const EnteredMedium* medium = nullptr);
+                                       const EnteredMedium* medium = nullptr,
+                                       NodeLight* along = nullptr);
 
 /// The share of even light from all around that enters a medium of index `eta`.
 float entering_share(double eta);
 
-/// What each node returns of light: its part's hemispherical albedo, under artwork that of both.
-std::vector<glm::vec3> albedo_at_nodes(const Scene& scene, const ExchangeNodes& nodes);
+/// What comes to nodes from outside of the product.
+struct DirectLight {
+    std::vector<glm::vec3> on_diffuser;
+    NodeLight along;  ///< by rays of nodes of parts with lobes
+};
+
+/// `lobes` names those parts.
+DirectLight direct_light_at_nodes(const Mesh& mesh,
+                                  const Tracer& tracer,
+                                  const NodeExchange& exchange,
+                                  const std::vector<DirectionalLight>& lights,
+                                  const Environment* environment,
+                                  const FilteredEnvironment& filtered,
+                                  const std::vector<bool>& lobes,
+                                  const Progress& progress = {});
 
 /// Light that came by other nodes.
 struct ExchangedLight {
     std::vector<glm::vec3> on_diffuser;  ///< what a white diffuser sends of it
-    std::vector<glm::vec3> sent;         ///< by the node itself, of all light
+    NodeLight sent;                      ///< by the node itself, of all light
 };
 /// At each node, after so many bounces: 1, or as many as still add to it.
 ExchangedLight exchanged_at_nodes(const NodeExchange& exchange,
-                                  std::span<const glm::vec3> direct,
-                                  std::span<const glm::vec3> albedo,
+                                  const DirectLight& direct,
+                                  const NodeReflectance& reflectance,
                                   int bounces);
 
 /// On a white diffuser at each node, what it sends of the light that nodes send.

@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "core/parallel.h"
+#include "core/random.h"
 #include "radiance/fragment_neighbours.h"
 #include "radiance/light/light_visibility.h"
 #include "radiance/light/mirror_facets.h"
@@ -38,17 +39,18 @@ class HitRays {
             const SurfaceMap& map,
             const glm::dvec3& eye_mm,
             const MirrorQuadrature& quadrature,
-            const ExchangeNodes& nodes,
+            const NodeExchange& exchange,
             std::uint32_t* to)
         : mesh_(mesh),
           tracer_(tracer),
           map_(map),
           eye_mm_(eye_mm),
           quadrature_(quadrature),
-          nodes_(nodes),
+          exchange_(exchange),
           to_(to) {}
 
     void begin(std::size_t fragment) {
+        fragment_ = static_cast<std::uint32_t>(fragment);
         facets_.emplace(facets_of(mesh_, map_, fragment, eye_mm_, quadrature_));
         ray_origins(mesh_, map_, fragment, origins_);
     }
@@ -60,6 +62,8 @@ class HitRays {
             TraceRay& ray = rays_.emplace_back();
             ray.origin = origins_[k % origins_.size()];
             ray.direction = (*facets_)[k % facets_->size()].mirrored(k);
+            chances_.push_back(static_cast<float>(
+                hash_3d(fragment_, static_cast<std::uint32_t>(k), 37u) * 0x1p-32));
         }
         constexpr std::size_t kAtATime = 256;
         if (rays_.size() >= kAtATime) finish();
@@ -69,24 +73,23 @@ class HitRays {
         hits_.resize(rays_.size());
         tracer_.closest(rays_, hits_);
         for (std::size_t k = 0; k < rays_.size(); ++k) {
-            *to_++ = node_at(hits_[k], rays_[k].direction);
+            *to_++ = ray_at(hits_[k], rays_[k].direction, chances_[k]);
         }
         rays_.clear();
+        chances_.clear();
     }
 
   private:
-    std::uint32_t node_at(const Hit& hit, const glm::vec3& direction) const {
+    /// Of the nodes around, one as often as it weighs.
+    std::uint32_t ray_at(const Hit& hit, const glm::vec3& direction, float chance) const {
         // Rounded otherwise than when it was traced
         if (!hit.valid()) return MirrorHits::kInside;
         const bool behind = sees_back(mesh_, hit, direction);
         if (behind && !has_two_sides(mesh_, hit.triangle)) return MirrorHits::kInside;
-        const auto around = nodes_.points.around(mesh_, hit.triangle, hit.barycentric);
-        const ExchangePoints::Share* nearest = &around[0];
-        for (const ExchangePoints::Share& share : around) {
-            if (share.weight > nearest->weight) nearest = &share;
-        }
-        const ExchangePoints& points = nodes_.points;
-        return nodes_.node_of[behind ? points.back[nearest->index] : nearest->index];
+        const std::uint32_t node =
+            exchange_.nodes.around(mesh_, hit.triangle, hit.barycentric, behind, chance);
+        const glm::vec3 normal = shading_normal(mesh_, hit);
+        return exchange_.ray_toward(node, -direction, behind ? -normal : normal);
     }
 
     const Mesh& mesh_;
@@ -94,11 +97,13 @@ class HitRays {
     const SurfaceMap& map_;
     const glm::dvec3& eye_mm_;
     const MirrorQuadrature& quadrature_;
-    const ExchangeNodes& nodes_;
+    const NodeExchange& exchange_;
     std::uint32_t* to_;
     std::optional<Facets> facets_;
     std::array<glm::vec3, kSamplesAFragment> origins_;
+    std::uint32_t fragment_ = 0;
     std::vector<TraceRay> rays_;
+    std::vector<float> chances_;
     std::vector<Hit> hits_;
 };
 
@@ -109,7 +114,7 @@ MirrorHits find_mirror_hits(const Mesh& mesh,
                             const SurfaceMap& map,
                             glm::dvec3 eye_mm,
                             const MirrorVisibility& visibility,
-                            const ExchangeNodes& nodes,
+                            const NodeExchange& exchange,
                             const Progress& progress) {
     MirrorHits hits;
     const std::vector<std::uint64_t>& blocked = visibility.blocked;
@@ -122,10 +127,10 @@ MirrorHits find_mirror_hits(const Mesh& mesh,
         }
         return count;
     });
-    hits.nodes.resize(hits.first_alone.back());
+    hits.rays.resize(hits.first_alone.back());
     const auto rays = [&](std::uint32_t first) {
         return HitRays(
-            mesh, tracer, map, eye_mm, visibility.quadrature, nodes, hits.nodes.data() + first);
+            mesh, tracer, map, eye_mm, visibility.quadrature, exchange, hits.rays.data() + first);
     };
     parallel_for(blocked.size(), 2048, [&](std::size_t begin, std::size_t end) {
         progress.check_stop();

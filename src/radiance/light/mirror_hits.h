@@ -1,4 +1,4 @@
-// What the rays of mirrors that meet the product meet: points between which light is exchanged.
+// What the rays of mirrors that meet the product meet: what nodes send along their own rays.
 #pragma once
 
 #include <cstdint>
@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "radiance/light/exchange_nodes.h"
+#include "radiance/light/interreflection.h"
 #include "radiance/light/mirror_visibility.h"
 
 namespace livery {
@@ -17,7 +17,8 @@ struct MirrorHits {
     /// Of each fragment, its word's set bits in rising order, from `first` on; then of each that
     /// looks for itself those of its other words, from `first_alone` on.
     std::vector<std::uint32_t> first, first_alone;
-    std::vector<std::uint32_t> nodes;  ///< kInside: the inside of a closed surface, which is dark
+    std::vector<std::uint32_t>
+        rays;  ///< of nodes; kInside: within a closed surface, where it is dark
 };
 
 /// Of all that was traced so far.
@@ -26,17 +27,17 @@ MirrorHits find_mirror_hits(const Mesh& mesh,
                             const SurfaceMap& map,
                             glm::dvec3 eye_mm,
                             const MirrorVisibility& visibility,
-                            const ExchangeNodes& nodes,
+                            const NodeExchange& exchange,
                             const Progress& progress);
 
-/// What the product sends into mirrors: of each node, working space.
+/// What the product sends into mirrors, working space.
 struct MirroredProduct {
     const MirrorHits* hits = nullptr;
-    std::span<const glm::vec3> sent;
+    const NodeLight* sent = nullptr;
 
     glm::vec3 light(std::uint32_t hit) const {
-        const std::uint32_t node = hits->nodes[hit];
-        return node == MirrorHits::kInside ? glm::vec3(0.0f) : sent[node];
+        const std::uint32_t ray = hits->rays[hit];
+        return ray == MirrorHits::kInside ? glm::vec3(0.0f) : sent->along(ray);
     }
 };
 

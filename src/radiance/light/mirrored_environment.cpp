@@ -92,15 +92,10 @@ MirroredEnvironment::MirroredEnvironment(const Environment& environment,
 bool MirroredEnvironment::find_seen(std::size_t fragment,
                                     bool light_alone,
                                     Scratch& scratch) const {
-    const std::vector<MirrorVisibility::Alone>& alone = visibility_->alone;
-    const auto own = std::lower_bound(
-        alone.begin(), alone.end(), fragment, [](const auto& one, std::size_t index) {
-            return one.fragment < index;
-        });
-    if (own != alone.end() && own->fragment == fragment) {
+    neighbours_->around(fragment, scratch.neighbours);
+    if (const MirrorVisibility::Alone* own = find_alone(fragment)) {
         ask_itself(*own, scratch);
     } else {
-        neighbours_->around(fragment, scratch.neighbours);
         if (std::all_of(scratch.neighbours.begin(), scratch.neighbours.end(), [&](const auto& one) {
                 return visibility_->blocked[one.fragment] == 0;
             })) {
@@ -171,40 +166,76 @@ glm::vec3 MirroredEnvironment::sent_at(std::uint64_t word,
     return product_.light(first + static_cast<std::uint32_t>(std::popcount(word & (own - 1))));
 }
 
-void MirroredEnvironment::ask_itself(const MirrorVisibility::Alone& alone, Scratch& scratch) const {
-    const std::size_t own_turn = neighbour_turn(map_, alone.fragment);
-    // How many turns from the fragment's own on
-    const auto word_of = [](std::size_t turns) { return turns % kNeighbourTurns / 2; };
-    // Where each word's hits begin
-    std::array<std::uint32_t, MirrorQuadrature::kTurns / 2> first{first_hit(alone.fragment)};
+const MirrorVisibility::Alone* MirroredEnvironment::find_alone(std::size_t fragment) const {
+    const std::vector<MirrorVisibility::Alone>& alone = visibility_->alone;
+    const auto found = std::lower_bound(
+        alone.begin(), alone.end(), fragment, [](const auto& one, std::size_t index) {
+            return one.fragment < index;
+        });
+    return found != alone.end() && found->fragment == fragment ? &*found : nullptr;
+}
+
+MirroredEnvironment::AloneWords MirroredEnvironment::words_of(
+    const MirrorVisibility::Alone& alone) const {
+    AloneWords words{&alone, neighbour_turn(map_, alone.fragment), {first_hit(alone.fragment)}};
     if (product_.hits) {
         const auto index = static_cast<std::size_t>(&alone - visibility_->alone.data());
         std::uint32_t next = product_.hits->first_alone[index];
-        for (std::size_t word = 1; word < first.size(); ++word) {
-            first[word] = next;
+        for (std::size_t word = 1; word < words.first.size(); ++word) {
+            words.first[word] = next;
             next += static_cast<std::uint32_t>(std::popcount(alone.blocked[word]));
         }
     }
+    return words;
+}
+
+void MirroredEnvironment::ask_itself(const MirrorVisibility::Alone& alone, Scratch& scratch) const {
+    const AloneWords own = words_of(alone);
+    // Those to the left and the right have looked into the other turns, and tell what is there;
+    // where parts send no light, all that hides the environment is dark alike.
+    constexpr float kBesideWeight = 6.0f;
+    std::array<AloneWords, 2> others;
+    std::size_t count = 0;
+    for (const FragmentNeighbours::Neighbour& one : scratch.neighbours) {
+        if (!product_.hits || one.weight < kBesideWeight || (one.turn + own.turn) % 2 == 0)
+            continue;
+        const MirrorVisibility::Alone* other = find_alone(one.fragment);
+        if (other && count < others.size()) others[count++] = words_of(*other);
+    }
+    // How many turns from a fragment's own on
+    const auto turns_from = [](const AloneWords& words, std::size_t turn) {
+        return (turn + kNeighbourTurns - words.turn) % kNeighbourTurns;
+    };
     scratch.seen_nodes.assign(quadrature_.count(), 0.0f);
     scratch.hidden_light.assign(quadrature_.count(), glm::vec3(0.0f));
     for (std::size_t k = 0; k < scratch.seen_nodes.size(); ++k) {
         const MirrorQuadrature::Ray& ray = quadrature_.ray(k);
-        const auto look = [&](std::size_t word, std::uint8_t bit, float share) {
-            scratch.seen_nodes[k] += share * share_seen(alone.blocked[word], bit);
-            scratch.hidden_light[k] += share * sent_at(alone.blocked[word], bit, first[word]);
-        };
+        const auto look =
+            [&](const AloneWords& words, std::size_t turns, std::uint8_t bit, float share) {
+                const std::size_t word = turns % kNeighbourTurns / 2;
+                const std::uint64_t blocked = words.of->blocked[word];
+                scratch.seen_nodes[k] += share * share_seen(blocked, bit);
+                scratch.hidden_light[k] += share * sent_at(blocked, bit, words.first[word]);
+            };
         if (ray.turn == MirrorQuadrature::kStraight) {
-            look(0, ray.bit, 1.0f);
+            look(own, 0, ray.bit, 1.0f);
             continue;
         }
-        const std::size_t turns = (ray.turn + kNeighbourTurns - own_turn) % kNeighbourTurns;
+        const std::size_t turns = turns_from(own, ray.turn);
         if (turns % 2 == 0) {
-            look(word_of(turns), ray.bit, 1.0f);
-            continue;
-        }
-        for (const std::size_t beside : {turns - 1, turns + 1}) {
-            const std::size_t turn = (own_turn + beside) % kNeighbourTurns;
-            look(word_of(beside), quadrature_.nearest(k, turn), 0.5f);
+            look(own, turns, ray.bit, 1.0f);
+        } else if (count > 0) {
+            for (std::size_t n = 0; n < count; ++n) {
+                look(others[n],
+                     turns_from(others[n], ray.turn),
+                     ray.bit,
+                     1.0f / static_cast<float>(count));
+            }
+        } else {
+            for (const std::size_t beside : {turns - 1, turns + 1}) {
+                const std::size_t turn = (own.turn + beside) % kNeighbourTurns;
+                look(own, beside, quadrature_.nearest(k, turn), 0.5f);
+            }
         }
     }
 }

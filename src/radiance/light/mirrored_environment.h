@@ -86,6 +86,16 @@ class MirroredEnvironment {
     bool find_seen(std::size_t fragment, bool light_alone, Scratch& scratch) const;
     void ask_neighbours(std::size_t fragment, Scratch& scratch) const;
     void ask_itself(const MirrorVisibility::Alone& alone, Scratch& scratch) const;
+    /// None: the fragment does not look for itself.
+    const MirrorVisibility::Alone* find_alone(std::size_t fragment) const;
+    /// What one that looks for itself has found: every other turn's word, from its own on, and
+    /// where each one's hits begin.
+    struct AloneWords {
+        const MirrorVisibility::Alone* of = nullptr;
+        std::size_t turn = 0;
+        std::array<std::uint32_t, MirrorQuadrature::kTurns / 2> first{};
+    };
+    AloneWords words_of(const MirrorVisibility::Alone& alone) const;
     /// What is sent along the ray of a word's bit, if it is set; the word's hits begin at `first`.
     glm::vec3 sent_at(std::uint64_t word, std::uint8_t bit, std::uint32_t first) const;
     std::uint32_t first_hit(std::size_t fragment) const {
