@@ -1,4 +1,4 @@
-// Why nothing is left of a mesh. Internal to scene/.
+// Why nothing is left of a mesh. Internal to mesh/.
 #pragma once
 
 #include <algorithm>

@@ -1,4 +1,4 @@
-// Files that a model or a look names. Internal to scene/.
+// Files that a model or a look names. Internal to mesh/.
 #pragma once
 
 #include <filesystem>

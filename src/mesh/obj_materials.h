@@ -1,4 +1,4 @@
-// The colours in a material library (.mtl) of an OBJ. Internal to scene/.
+// The colours in a material library (.mtl) of an OBJ. Internal to mesh/.
 #pragma once
 
 #include <filesystem>

@@ -1,4 +1,4 @@
-// What a PLY file says that it holds. Internal to scene/.
+// What a PLY file says that it holds. Internal to mesh/.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 // What a scan's file holds, before it is made a mesh: read_ply and read_obj fill it, mesh_of builds
-// on it. Internal to scene/.
+// on it. Internal to mesh/.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
 // A soup of triangles as a surface: what is one point, which triangles are neighbours, which side
-// is out. Internal to scene/.
+// is out. Internal to mesh/.
 #pragma once
 
 #include <array>

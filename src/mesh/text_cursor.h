@@ -1,4 +1,4 @@
-// Walks through lines of words and numbers. Internal to scene/.
+// Walks through lines of words and numbers. Internal to mesh/.
 #pragma once
 
 #include <charconv>
