@@ -3,6 +3,8 @@
 // livery measure profile
 #include <memory>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
@@ -17,7 +19,7 @@ namespace livery {
 
 namespace {
 
-inline Option captures_option(std::string* folder) {
+Option captures_option(std::string* folder) {
     return {"--captures",
             "DIR",
             "photographs with their manifest.json (docs/measuring.md)",
@@ -25,11 +27,23 @@ inline Option captures_option(std::string* folder) {
             true};
 }
 
-inline Option camera_to_xyz_option(std::string* file) {
+Option camera_to_xyz_option(std::string* file) {
     return {"--camera-to-xyz",
             "FILE",
             "matrix of linear camera RGB to XYZ (default: as the manifest says, else Rec.709)",
             file};
+}
+
+Outcome outcome_of(Json figures,
+                   std::string text,
+                   const std::vector<std::string>& notes,
+                   const std::string& file) {
+    Outcome outcome;
+    outcome.figures = std::move(figures);
+    outcome.figures["file"] = file;
+    outcome.text = std::move(text);
+    tell_notes(notes, outcome);
+    return outcome;
 }
 
 Json figures_of(const SphereMeasurement& report) {
@@ -108,14 +122,10 @@ Command measure_brdf_command() {
         {"--out", "FILE", "measured reflectance, .csv", &arguments->out, true},
     };
     command.run = [arguments](const CommonOptions&, const Progress& progress) {
-        const SphereMeasurement report = measure_sphere(
-            {arguments->captures, arguments->camera_to_xyz, arguments->out}, progress);
-        Outcome outcome;
-        outcome.figures = figures_of(report);
-        outcome.figures["file"] = arguments->out;
-        outcome.text = text_of(report, arguments->out);
-        tell_notes(report.notes, outcome);
-        return outcome;
+        const std::string& out = arguments->out;
+        const SphereMeasurement report =
+            measure_sphere({arguments->captures, arguments->camera_to_xyz, out}, progress);
+        return outcome_of(figures_of(report), text_of(report, out), report.notes, out);
     };
     return command;
 }
@@ -255,13 +265,10 @@ Command measure_environment_command() {
         {"--out", "FILE", "latitude-longitude map, .exr", &arguments->out, true},
     };
     command.run = [arguments](const CommonOptions&, const Progress& progress) {
+        const std::string& out = arguments->out;
         const EnvironmentMeasurement report = measure_environment(request_of(*arguments), progress);
-        Outcome outcome;
-        outcome.figures = figures_of(report);
-        outcome.figures["file"] = arguments->out;
+        Outcome outcome = outcome_of(figures_of(report), text_of(report, out), report.notes, out);
         if (!arguments->mask.empty()) outcome.figures["mask"] = arguments->mask;
-        outcome.text = text_of(report, arguments->out);
-        tell_notes(report.notes, outcome);
         return outcome;
     };
     return command;
