@@ -6,6 +6,16 @@
 
 namespace livery {
 
+bool is_measured(const Material& material) { return material.model == ReflectanceModel::measured; }
+
+bool is_translucent(const Material& material) {
+    return material.model == ReflectanceModel::translucent && material.medium;
+}
+
+bool has_film(const Material& material) {
+    return material.model == ReflectanceModel::car_paint && material.film_nm > 0.0;
+}
+
 bool has_glints(const Material& material) {
     return material.model == ReflectanceModel::car_paint && material.glint_density_per_mm2 > 0.0;
 }
@@ -17,8 +27,7 @@ std::string glint_scale_text(const Material& material) {
 }
 
 bool is_read(const Material& material) {
-    return material.model != ReflectanceModel::measured || !material.measured ||
-           !material.measured->unread;
+    return !is_measured(material) || !material.measured || !material.measured->unread;
 }
 
 Material with_measured_read(Material material) {

@@ -67,6 +67,10 @@ struct Material {
     std::filesystem::path file;
 };
 
+/// What it is beyond a formula and its parameters: who draws, writes or edits it asks these.
+bool is_measured(const Material& material);     ///< drawn as an instrument measured it
+bool is_translucent(const Material& material);  ///< has a `medium`
+bool has_film(const Material& material);        ///< on its flakes
 /// Whether single flakes are to be seen in it (shaders/radiance/glints.glsl).
 bool has_glints(const Material& material);
 /// "physical", or "exaggerated 30 times": the size of flakes that glint.

@@ -344,55 +344,43 @@ const std::vector<ModelInfo>& model_table() {
          kConserving,
          LIVERY_BSDF(car_paint, PREPARED),
          LIVERY_NUMBERS(CarPaintPrepared, car_paint)},
+        // What is measured follows no formula, and is evaluated by paint_bsdf.h alone.
+        {ReflectanceModel::measured,
+         "measured",
+         "Measured",
+         "What an instrument measured, drawn as it is.",
+         "a measured paint",
+         "no part is measured",
+         {},
+         {},
+         Lobe::half_alpha,
+         kIsotropic,
+         kByDirection,
+         kReciprocal,
+         !kConserving,
+         "measured",
+         no_functions<float, glm::vec3, f32::BsdfParameters, f32::BsdfEnvironment>(),
+         no_functions<double, glm::dvec3, f64::BsdfParameters, f64::BsdfEnvironment>()},
+        // Its functions are those of what leaves at once, by the albedo (albedo_paint()); what
+        // leaves beside where it entered is the renderers'.
+        {ReflectanceModel::translucent,
+         "translucent",
+         "Translucent",
+         "A medium that light enters, and leaves somewhere else.",
+         "a translucent material",
+         "no part is drawn as translucent",
+         {"microfacet.glsl", "layers.glsl", "ggx.glsl"},
+         {"alpha"},
+         Lobe::half_alpha,
+         kIsotropic,
+         kByDirection,
+         kReciprocal,
+         kConserving,
+         LIVERY_BSDF(ggx, PARAMETERS),
+         LIVERY_NUMBERS(GgxPrepared, ggx_exit)},
     };
     return table;
 }
-
-namespace {
-
-const ModelInfo& measured_info() {
-    static const ModelInfo info = {
-        ReflectanceModel::measured,
-        "measured",
-        "Measured",
-        "What an instrument measured, drawn as it is.",
-        "a measured paint",
-        "no part is measured",
-        {},
-        {},
-        Lobe::half_alpha,
-        kIsotropic,
-        kByDirection,
-        kReciprocal,
-        !kConserving,
-        "measured",
-        no_functions<float, glm::vec3, f32::BsdfParameters, f32::BsdfEnvironment>(),
-        no_functions<double, glm::dvec3, f64::BsdfParameters, f64::BsdfEnvironment>()};
-    return info;
-}
-
-/// What leaves it beside where it entered is the renderers'; its functions are those of what leaves
-/// at once, by the albedo (albedo_paint()).
-const ModelInfo& translucent_info() {
-    static const ModelInfo info = {ReflectanceModel::translucent,
-                                   "translucent",
-                                   "Translucent",
-                                   "A medium that light enters, and leaves somewhere else.",
-                                   "a translucent material",
-                                   "no part is drawn as translucent",
-                                   {"microfacet.glsl", "layers.glsl", "ggx.glsl"},
-                                   {"alpha"},
-                                   Lobe::half_alpha,
-                                   kIsotropic,
-                                   kByDirection,
-                                   kReciprocal,
-                                   kConserving,
-                                   LIVERY_BSDF(ggx, PARAMETERS),
-                                   LIVERY_NUMBERS(GgxPrepared, ggx_exit)};
-    return info;
-}
-
-}  // namespace
 
 #undef LIVERY_BSDF
 #undef LIVERY_BSDF_OF
@@ -400,31 +388,28 @@ const ModelInfo& translucent_info() {
 #undef LIVERY_PARAMETERS
 #undef LIVERY_PREPARED
 
+std::span<const ModelInfo> formula_models() {
+    return std::span(model_table()).first(static_cast<std::size_t>(ReflectanceModel::measured));
+}
+
 const ModelInfo& model_info(ReflectanceModel model) {
-    if (model == ReflectanceModel::measured) return measured_info();
-    if (model == ReflectanceModel::translucent) return translucent_info();
-    const auto& table = model_table();
     const auto index = static_cast<std::size_t>(model);
-    if (index >= table.size()) {
+    if (index >= model_table().size()) {
         throw std::invalid_argument(fmt::format("there is no reflectance model {}", index));
     }
-    return table[index];
+    return model_table()[index];
 }
 
 const ModelInfo* find_model(const std::string& name) {
     const auto& table = model_table();
     const auto found = std::find_if(
         table.begin(), table.end(), [&](const ModelInfo& info) { return info.name == name; });
-    if (found != table.end()) return &*found;
-    if (name == translucent_info().name) return &translucent_info();
-    return name == measured_info().name ? &measured_info() : nullptr;
+    return found == table.end() ? nullptr : &*found;
 }
 
 std::string model_names() {
     std::vector<const char*> names;
     for (const ModelInfo& info : model_table()) names.push_back(info.name);
-    names.push_back(measured_info().name);
-    names.push_back(translucent_info().name);
     return fmt::format("{}", fmt::join(names, ", "));
 }
 

@@ -2,6 +2,7 @@
 // file of shaders/bsdf.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
@@ -65,10 +66,10 @@ struct ModelInfo {
     bool has(const std::string& parameter) const;
 };
 
-/// The formulas, indexed by ReflectanceModel. What is measured follows no formula: it has a
-/// description (model_info), but is evaluated by paint_bsdf.h alone. What is translucent follows
-/// ggx where its light leaves at once; its numbers for shading are of light that does not.
+/// All of them, indexed by ReflectanceModel.
 const std::vector<ModelInfo>& model_table();
+/// Those that are a formula from light to eye: all but measured and translucent.
+std::span<const ModelInfo> formula_models();
 const ModelInfo& model_info(ReflectanceModel model);
 /// By its name in files; null: none.
 const ModelInfo* find_model(const std::string& name);

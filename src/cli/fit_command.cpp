@@ -73,7 +73,7 @@ Command fit_brdf_command() {
     };
     const auto arguments = std::make_shared<Arguments>();
     std::vector<std::string> models{"all"};
-    for (const ModelInfo& info : model_table()) {
+    for (const ModelInfo& info : formula_models()) {
         if (can_be_fitted(info)) models.push_back(info.name);
     }
     Command command;

@@ -35,9 +35,7 @@ using AnyReflectance = std::variant<Material, MeasuredReflectance>;
 AnyReflectance find_reflectance(const std::string& name_or_file) {
     if (is_measured_file(name_or_file)) return read_measured_file(name_or_file);
     Material material = find_material(name_or_file);
-    if (material.model == ReflectanceModel::measured) {
-        return read_measured_file(material.measured->file);
-    }
+    if (is_measured(material)) return read_measured_file(material.measured->file);
     return material;
 }
 

@@ -24,7 +24,7 @@ std::optional<PassId> pass_of(const std::string& words) {
             known.emplace_back(PassKind::shade, "", model, glints);
         }
     };
-    for (const ModelInfo& model : model_table()) add(model.model);
+    for (const ModelInfo& model : formula_models()) add(model.model);
     add(ReflectanceModel::measured);
     const auto found = std::find_if(
         known.begin(), known.end(), [&](const PassId& pass) { return to_string(pass) == words; });

@@ -128,7 +128,7 @@ void collect_paints(PassTimes& times,
     Scene scene = look;
     const auto body = static_cast<std::size_t>(part_index(*scene.product, "body"));
     std::vector<Material> paints;
-    for (const ModelInfo& model : model_table()) {
+    for (const ModelInfo& model : formula_models()) {
         Material& paint = paints.emplace_back();
         paint.model = model.model;
         if (model.model != ReflectanceModel::car_paint) continue;

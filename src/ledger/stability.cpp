@@ -71,7 +71,7 @@ StabilityLedger measure_stability(GlDevice device,
         const HeadlessContext context(device);
         result.renderer = context.renderer();
         std::vector<ReflectanceModel> models;
-        for (const ModelInfo& info : model_table()) models.push_back(info.model);
+        for (const ModelInfo& info : formula_models()) models.push_back(info.model);
         models.push_back(ReflectanceModel::measured);
         for (const ReflectanceModel model : models) {
             progress.update(0.0, std::string("drawing ") + model_info(model).name);
@@ -85,10 +85,10 @@ StabilityLedger measure_stability(GlDevice device,
             }
         }
     }
-    for (const ModelInfo& info : model_table()) {
-        progress.update(
-            static_cast<double>(result.models.size()) / static_cast<double>(model_table().size()),
-            info.name);
+    for (const ModelInfo& info : formula_models()) {
+        progress.update(static_cast<double>(result.models.size()) /
+                            static_cast<double>(formula_models().size()),
+                        info.name);
         const auto start = Clock::now();
         ModelStability& model = result.models.emplace_back();
         model.model = info.model;

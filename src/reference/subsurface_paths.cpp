@@ -59,7 +59,7 @@ BoundaryPoint onto_surface(BoundaryPoint at,
 std::optional<TranslucentPart> translucent_part(const Product& product,
                                                 const Material& material,
                                                 std::size_t part) {
-    if (material.model != ReflectanceModel::translucent || !material.medium) return std::nullopt;
+    if (!is_translucent(material)) return std::nullopt;
     const TranslucentMaterial medium = on_mock_up(*material.medium, product.product_scale);
     return TranslucentPart{walk_medium(medium),
                            static_cast<std::uint16_t>(part),

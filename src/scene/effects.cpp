@@ -17,10 +17,6 @@ namespace {
 
 constexpr std::array kQualities{Quality::draft, Quality::normal, Quality::high, Quality::reference};
 
-bool has_film(const Material& material) {
-    return material.model == ReflectanceModel::car_paint && material.film_nm > 0.0;
-}
-
 bool is_lit(const Scene& scene) {
     return std::any_of(scene.lights.begin(), scene.lights.end(), [](const DirectionalLight& light) {
         return light.radiance_rec709 != glm::dvec3(0.0);

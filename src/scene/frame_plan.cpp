@@ -190,9 +190,6 @@ void plan_interreflection(const Scene& scene, const Needs& needs, FramePlan& pla
 }
 
 void plan_subsurface(const Scene& scene, const Scene& whole, FramePlan& plan) {
-    const auto is_translucent = [](const Material& material) {
-        return material.model == ReflectanceModel::translucent;
-    };
     const auto skip = [&](std::string why) {
         plan.skipped.push_back({PassKind::subsurface, std::move(why)});
     };
@@ -295,12 +292,6 @@ void plan_shading(const Scene& scene,
     }
     for (const ModelInfo& model : model_table()) {
         if (needs.models.contains(model.model)) continue;
-        plan.skipped.push_back({PassId(PassKind::shade, "*", model.model), model.unused});
-    }
-    for (const ReflectanceModel other :
-         {ReflectanceModel::measured, ReflectanceModel::translucent}) {
-        const ModelInfo& model = model_info(other);
-        if (needs.models.contains(other)) continue;
         plan.skipped.push_back({PassId(PassKind::shade, "*", model.model), model.unused});
     }
 }

@@ -31,7 +31,7 @@ double reach_in_paths(const ScatteringMedium& medium) {
 }  // namespace
 
 double subsurface_reach_mm(const Material& paint, double product_scale) {
-    if (paint.model != ReflectanceModel::translucent || !paint.medium) return 0.0;
+    if (!is_translucent(paint)) return 0.0;
     const glm::dvec3 albedo = entering_albedo(*paint.medium);
     double reach = 0.0;
     for (int c = 0; c < 3; ++c) {

@@ -16,7 +16,7 @@ std::string models_as_table() {
     std::string text =
         "| model | what it is | parameters | reciprocal | conserves energy |\n"
         "| --- | --- | --- | --- | --- |\n";
-    for (const ModelInfo& model : model_table()) {
+    for (const ModelInfo& model : formula_models()) {
         text += fmt::format("| `{}` | {} | `{}` | {} | {} |\n",
                             model.name,
                             model.meaning,

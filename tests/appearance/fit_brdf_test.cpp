@@ -108,7 +108,7 @@ TEST(FitBrdf, NightlyAllModelsAreRankedAndTheTrueOneIsFound) {
     EXPECT_LE(told.back(), 1.0);
     ASSERT_EQ(fits.size(),
               static_cast<std::size_t>(
-                  std::count_if(model_table().begin(), model_table().end(), can_be_fitted)));
+                  std::count_if(formula_models().begin(), formula_models().end(), can_be_fitted)));
     for (std::size_t k = 1; k < fits.size(); ++k) {
         EXPECT_LE(weighed_error(fits[k - 1]), weighed_error(fits[k]));
     }

@@ -130,7 +130,7 @@ TEST_P(OnTheGpu, GivesTheValuesOfDouble) {
 }
 
 TEST(PreparedFields, AreAllOfThePreparedNumbers) {
-    for (const ModelInfo& model : model_table()) {
+    for (const ModelInfo& model : formula_models()) {
         if (!model.prepared.type) {
             EXPECT_TRUE(prepared_fields(model.model).empty()) << model.name;
             continue;

@@ -18,7 +18,7 @@ namespace livery {
 
 inline std::vector<ReflectanceModel> all_models() {
     std::vector<ReflectanceModel> models;
-    for (const ModelInfo& model : model_table()) models.push_back(model.model);
+    for (const ModelInfo& model : formula_models()) models.push_back(model.model);
     return models;
 }
 

@@ -151,7 +151,7 @@ TEST(GlossOptics, FresnelIsFresnels) {
 }
 
 TEST(PaintFigures, AreFiniteForEveryModelAtItsEnds) {
-    for (const ModelInfo& model : model_table()) {
+    for (const ModelInfo& model : formula_models()) {
         for (const bool high : {false, true}) {
             Material material = of_model(model.model);
             for (const char* name : model.parameters) {

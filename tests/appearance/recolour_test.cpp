@@ -109,7 +109,7 @@ TEST(Recolour, RefusesWhatHasNoColour) {
 }
 
 TEST(Recolour, TakesEveryModel) {
-    for (const ModelInfo& model : model_table()) {
+    for (const ModelInfo& model : formula_models()) {
         Material paint;
         paint.name = model.name;
         paint.model = model.model;
@@ -122,7 +122,7 @@ TEST(Recolour, AnotherModelKeepsTheColour) {
     const glm::dvec3 asked = parse_colour("lab:30,40,20");
     const Material typed = with_colour(find_material("solid red"), asked).material;
     const Material plain = find_material("solid green");
-    for (const ModelInfo& model : model_table()) {
+    for (const ModelInfo& model : formula_models()) {
         const Material made = with_model(typed, model.model);
         EXPECT_EQ(made.model, model.model);
         EXPECT_EQ(made.name, typed.name);

@@ -38,7 +38,7 @@ TEST_P(Drawn, FollowsDouble) {
 
 std::vector<ReflectanceModel> every_model() {
     std::vector<ReflectanceModel> models;
-    for (const ModelInfo& info : model_table()) models.push_back(info.model);
+    for (const ModelInfo& info : formula_models()) models.push_back(info.model);
     models.push_back(ReflectanceModel::measured);
     return models;
 }

@@ -147,7 +147,7 @@ std::vector<std::pair<std::string, Spoil>> spoils(const Material& material) {
 
 TEST_F(NoNumber, InWhatAFragmentReadsEndsBlackAndCounted) {
     std::vector<std::pair<ReflectanceModel, bool>> paints;
-    for (const ModelInfo& info : model_table()) paints.push_back({info.model, false});
+    for (const ModelInfo& info : formula_models()) paints.push_back({info.model, false});
     paints.push_back({ReflectanceModel::measured, false});
     paints.push_back({ReflectanceModel::car_paint, true});
     for (const auto& [model, glints] : paints) {

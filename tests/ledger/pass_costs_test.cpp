@@ -160,7 +160,7 @@ TEST(ShippedCosts, KnowWhateverAShippedLookCallsFor) {
             }
         }
     }
-    for (const ModelInfo& info : model_table()) {
+    for (const ModelInfo& info : formula_models()) {
         Material paint;
         paint.model = info.model;
         EXPECT_TRUE(paint_cost(paint, shipped.passes).ns_a_pixel) << info.name;

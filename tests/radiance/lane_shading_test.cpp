@@ -129,7 +129,7 @@ std::vector<float> shaded(const LaneFunctions& functions,
 
 TEST(LaneShading, KnowsEveryModelThatIsPrepared) {
     int known = 0;
-    for (const ModelInfo& model : model_table()) {
+    for (const ModelInfo& model : formula_models()) {
         if (!model.prepared.type) continue;
         ++known;
         for (std::size_t k = 0; k < lanes_available(); ++k) {

@@ -73,7 +73,7 @@ TEST(RasterPreview, AgreesWithTheSurfaceMapInside) {
     HeadlessContext context(tested_gl());
     View view = test_view(120, 90);
     view.distortion = {-0.1, 0.02, 1e-3, -5e-4, 0.0};
-    for (const ModelInfo& info : model_table()) {
+    for (const ModelInfo& info : formula_models()) {
         const ReflectanceModel model = info.model;
         Scene scene = scene_of(two_spheres(), paint_of(model, 0.2));
         scene.part_materials[0].film_nm = 320.0;

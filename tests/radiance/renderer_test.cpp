@@ -45,7 +45,7 @@ TEST_P(Renderer, DirectLightAgreesWithBruteForce) {
                                                               {ReflectanceModel::ggx, 0.2},
                                                               {ReflectanceModel::clearcoat, 0.02},
                                                               {ReflectanceModel::car_paint, 0.02}};
-    for (const ModelInfo& model : model_table()) cases.emplace_back(model.model, 0.1);
+    for (const ModelInfo& model : formula_models()) cases.emplace_back(model.model, 0.1);
     for (const auto& [model, alpha] : cases) {
         Scene scene = scene_of(two_spheres(), paint_of(model, alpha));
         scene.part_materials[1].film_nm = 320.0;  // where there are flakes
@@ -141,7 +141,7 @@ TEST_P(Renderer, GlossyPaintsInUniformLightShowTheirAlbedo) {
     // Whatever the lobe, light that is the same from everywhere is weighted by the albedo toward
     // the eye. The weights of the others are tested against quadrature with the reflectance source.
     const View view = test_view(48, 36);
-    for (const ModelInfo& info : model_table()) {
+    for (const ModelInfo& info : formula_models()) {
         if (info.same_from_all_sides) continue;
         const ReflectanceModel model = info.model;
         Scene scene = scene_of(make_sphere({0, 0, 0}, 40.0, 64, "ball"), paint_of(model, 0.1));

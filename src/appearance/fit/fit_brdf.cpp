@@ -280,9 +280,9 @@ std::vector<BrdfFit> fit_all_models(const FitSamples& samples,
     const DifferenceTruth truth = difference_truth(truth_working);
     std::vector<BrdfFit> fits;
     const auto count = static_cast<double>(
-        std::count_if(model_table().begin(), model_table().end(), can_be_fitted));
+        std::count_if(formula_models().begin(), formula_models().end(), can_be_fitted));
     double index = 0.0;
-    for (const ModelInfo& info : model_table()) {
+    for (const ModelInfo& info : formula_models()) {
         if (!can_be_fitted(info)) continue;
         const Progress part = progress.part(index / count, (index + 1.0) / count);
         fits.push_back(fit_model(info.model, samples, truth, fits, part));

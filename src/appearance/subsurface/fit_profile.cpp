@@ -316,10 +316,9 @@ void refuse_what_is_not_told(const ProfileFit& fit, const ProfileFitOptions& opt
 double model_error_of(const std::vector<Weighed>& samples,
                       const ProfileFitOptions& options,
                       const ScatteringMedium& medium) {
-    const SubsurfaceModel best = best_model(medium).model;
-    if (best == options.model) return 0.0;
+    if (options.model == kBestSubsurfaceModel) return 0.0;
     std::vector<double> off = residuals_of(samples, options.model, medium);
-    const std::vector<double> truth = residuals_of(samples, best, medium);
+    const std::vector<double> truth = residuals_of(samples, kBestSubsurfaceModel, medium);
     for (std::size_t k = 0; k < off.size(); ++k) off[k] -= truth[k];
     return std::sqrt(weighed_square(samples, off));
 }

@@ -118,7 +118,7 @@ MediumErrors model_errors(const NamedStack& named,
     const std::vector<ProfileRing> rings = rings_of(stack);
     const MonteCarloProfile truth = monte_carlo_profile(stack, rings, settings, progress);
     const double whole = exact_totals(stack).reflectance;
-    MediumErrors errors{named.name, is_slab, 0.0, {}, info_of(best_model(stack).model).name};
+    MediumErrors errors{named.name, is_slab, 0.0, {}};
     double noise = 0.0, all = 0.0;
     for (std::size_t k = 0; k < rings.size(); ++k) {
         // The mean of |x| for a normal error.
@@ -155,10 +155,11 @@ std::string markdown_of(const std::vector<MediumErrors>& media) {
         std::string name = errors.name;
         for (const ModelError& error : errors.models) {
             const std::string model = info_of(error.model).name;
+            const bool best = error.model == kBestSubsurfaceModel;
             text += fmt::format(
                 "| {} | {} | {:.1f}% | {:+.1f}% | {:.3f} | {} |\n",
                 name,
-                model == errors.best ? "**" + model + "**" : model,
+                best ? "**" + model + "**" : model,
                 100.0 * error.reflectance_l1,
                 100.0 * error.reflectance_bias,
                 error.rms_ln,

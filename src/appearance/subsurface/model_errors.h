@@ -24,7 +24,6 @@ struct MediumErrors {
     bool is_slab = false;
     double noise_l1 = 0.0;  ///< what of each L1 Monte Carlo's own standard errors amount to
     std::vector<ModelError> models;
-    std::string best;  ///< what best_model() chooses
 };
 
 struct NamedStack {

@@ -339,27 +339,20 @@ int measured_error(const ScatteringStack& stack) {
 
 }  // namespace
 
-ModelChoice best_model(const ScatteringMedium& medium) {
-    constexpr auto kBest = SubsurfaceModel::scaled_beam_diffusion;
-    if (!(medium.sigma_s_prime() > 0.0)) {
-        return {kBest, "nothing scatters here, which every model knows"};
-    }
-    return {kBest,
-            fmt::format("no model is measurably nearer to Monte Carlo in any medium compared than "
-                        "single scattering and beam diffusion scaled to the exact total: within "
-                        "{}% of the light in those like this one",
-                        measured_error(medium))};
-}
-
-ModelChoice best_model(const ScatteringStack& given) {
+std::string why_best(const ScatteringStack& given) {
     const ScatteringStack stack = merged(given);
-    if (stack.layers.size() == 1) return best_model(stack.layers.front());
-    constexpr auto kBest = SubsurfaceModel::scaled_beam_diffusion;
-    if (!stack.scatters()) return {kBest, "nothing scatters here, which every model knows"};
-    return {kBest,
-            fmt::format("nearer to Monte Carlo than the multipole in every stack compared, within "
-                        "{}% of the light",
-                        measured_error(stack))};
+    if (!stack.scatters()) return "nothing scatters here, which every model knows";
+    if (stack.layers.size() > 1) {
+        return fmt::format(
+            "nearer to Monte Carlo than the multipole in every stack compared, within "
+            "{}% of the light",
+            measured_error(stack));
+    }
+    return fmt::format(
+        "no model is measurably nearer to Monte Carlo in any medium compared than "
+        "single scattering and beam diffusion scaled to the exact total: within "
+        "{}% of the light in those like this one",
+        measured_error(stack.layers.front()));
 }
 
 }  // namespace livery

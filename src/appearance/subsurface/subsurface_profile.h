@@ -60,18 +60,16 @@ struct SubsurfaceProfile {
 /// slabs).
 SubsurfaceProfile subsurface_profile(SubsurfaceModel model, const ScatteringMedium& medium);
 
-struct ModelChoice {
-    SubsurfaceModel model;
-    std::string why;
-};
-/// The analytic model that is nearest to Monte Carlo for such a medium, and what says so.
-ModelChoice best_model(const ScatteringMedium& medium);
+/// The analytic model that is nearest to Monte Carlo in every medium and stack compared
+/// (docs/subsurface.md).
+inline constexpr SubsurfaceModel kBestSubsurfaceModel = SubsurfaceModel::scaled_beam_diffusion;
+/// Within how much of the light it is so for media like this one.
+std::string why_best(const ScatteringStack& stack);
 
 /// The same for layers: scaled_beam_diffusion, with diffusion solved in all layers at once, or
 /// multipole, layer by layer (Donner and Jensen 2005); others are refused as above. Layers of equal
 /// coefficients are merged, and one that is left is the medium above.
 SubsurfaceProfile subsurface_profile(SubsurfaceModel model, const ScatteringStack& stack);
-ModelChoice best_model(const ScatteringStack& stack);
 
 /// Radius within which this share of what leaves the top does so, by the profile.
 double energy_radius_mm(const SubsurfaceProfile& profile, double mean_free_path_mm, double share);

@@ -153,16 +153,15 @@ void run_model(const std::string& name,
                const std::vector<double>& radii,
                Json& figures) {
     const bool best = name == "best";
-    const ModelChoice choice =
-        best ? best_model(stack) : ModelChoice{*find_subsurface_model(name), ""};
+    const SubsurfaceModel model = best ? kBestSubsurfaceModel : *find_subsurface_model(name);
     // Of one medium each model is what it says, and refuses what it is not for.
     const SubsurfaceProfile profile = stack.layers.size() == 1
-                                          ? subsurface_profile(choice.model, stack.layers.front())
-                                          : subsurface_profile(choice.model, stack);
-    figures["model"] = info_of(choice.model).name;
+                                          ? subsurface_profile(model, stack.layers.front())
+                                          : subsurface_profile(model, stack);
+    figures["model"] = info_of(model).name;
     if (best) {
         figures["asked"] = "best";
-        figures["why"] = choice.why;
+        figures["why"] = why_best(stack);
     }
     figures["radii_mm"] = radii;
     Json rd = Json::array(), rt = Json::array();
@@ -205,7 +204,7 @@ Json json_of(const MediumErrors& errors) {
                           {"was_negative", error.was_negative}});
     }
     return {{"name", errors.name},
-            {"best", errors.best},
+            {"best", info_of(kBestSubsurfaceModel).name},
             {"noise_l1", errors.noise_l1},
             {"models", models}};
 }

@@ -30,9 +30,8 @@ ProfileFitOptions options_of(const BssrdfFitArguments& arguments) {
     options.eta = parse_number("--eta", arguments.eta).value_or(1.5);
     options.g = parse_number("--g", arguments.g).value_or(0.0);
     options.thickness_mm = parse_number("--thickness-mm", arguments.thickness_mm);
-    options.model = arguments.model == "best"
-                        ? best_model({1.0, 1.0, 0.0, options.eta, options.thickness_mm}).model
-                        : *find_subsurface_model(arguments.model);
+    options.model =
+        arguments.model == "best" ? kBestSubsurfaceModel : *find_subsurface_model(arguments.model);
     const SubsurfaceModelInfo& info = info_of(options.model);
     check_argument(options.thickness_mm ? info.slab : info.half_space,
                    fmt::format("--model: found {}, which knows {}, expected best or another",

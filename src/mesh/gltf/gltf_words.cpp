@@ -35,8 +35,8 @@ GltfWords words_of_measured(const Material& paint) {
 }  // namespace
 
 GltfWords words_of(const Material& paint) {
-    if (paint.model == ReflectanceModel::measured) return words_of_measured(paint);
-    if (paint.model == ReflectanceModel::translucent) {
+    if (is_measured(paint)) return words_of_measured(paint);
+    if (is_translucent(paint)) {
         GltfWords words = words_of(albedo_paint(paint));
         words.whole = false;
         return words;

@@ -102,7 +102,7 @@ class PaintMaterials {
         : model_(model), notes_(notes) {}
 
     int of(const Material& paint) {
-        const bool measured = paint.model == ReflectanceModel::measured;
+        const bool measured = is_measured(paint);
         const std::string text = measured ? paint.file.string() : text_of(paint);
         const auto [known, is_new] =
             index_of_.try_emplace({paint.name, text}, static_cast<int>(model_.materials.size()));

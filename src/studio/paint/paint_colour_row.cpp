@@ -160,8 +160,7 @@ void draw_chips(Studio& studio, const Material& paint) {
 }  // namespace
 
 void draw_paint_colour_row(Studio& studio, const Material& paint) {
-    if (paint.model == ReflectanceModel::measured) return;
-    if (paint.model == ReflectanceModel::translucent) return;  // its colour is its medium's
+    if (is_measured(paint) || is_translucent(paint)) return;  // their colour is no parameter
     draw_typed(studio, paint);
     if (!studio.panels.paint->colour.typing) draw_asked_for(paint);
     draw_chips(studio, paint);

@@ -155,7 +155,7 @@ void draw_model(Studio& studio, const Material& material) {
     row_label("Model");
     const ModelInfo& chosen = model_info(material.model);
     if (ImGui::BeginCombo("##model", chosen.label)) {
-        for (const ModelInfo& model : model_table()) {
+        for (const ModelInfo& model : formula_models()) {
             const bool same = model.model == material.model;
             const bool picked = ImGui::Selectable(model.label, same);
             name_last_item(std::string("model:") + model.name);
@@ -226,7 +226,7 @@ void draw_parameters(Studio& studio) {
     PaintPanelState& state = *studio.panels.paint;
     Material& edited = state.held.start(*state.material);
     ParameterRows rows(studio, edited);
-    if (edited.model == ReflectanceModel::translucent && edited.medium) {
+    if (is_translucent(edited)) {
         draw_medium_rows(
             edited,
             studio.product->product_scale,

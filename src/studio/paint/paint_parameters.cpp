@@ -41,7 +41,7 @@ std::string unit_of(const ParameterInfo& parameter) {
 std::string summary_of(const Material& material) {
     const ModelInfo& model = model_info(material.model);
     std::string text = model.label;
-    if (material.model == ReflectanceModel::measured && material.measured) {
+    if (is_measured(material) && material.measured) {
         text += "\n" + material.measured->file.filename().string();
     }
     for (const char* name : model.parameters) {

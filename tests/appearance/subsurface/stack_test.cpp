@@ -161,7 +161,7 @@ TEST(BestModel, NightlyOfLayersIsAsNearAsItSaysAndNearerThanTheMultipole) {
         ASSERT_EQ(errors.models.size(), 2u);
         const ModelError &best = errors.models[0], &other = errors.models[1];
         ASSERT_EQ(best.model, scaled_beam_diffusion);
-        const std::string why = best_model(one.stack).why;
+        const std::string why = why_best(one.stack);
         const double stated = std::stod(why.substr(why.find("within ") + 7)) / 100.0;
         EXPECT_LT(best.reflectance_l1, stated + errors.noise_l1) << one.name;
         EXPECT_LT(best.transmittance_l1, stated + 2.0 * errors.noise_l1) << one.name;
