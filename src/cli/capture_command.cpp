@@ -25,7 +25,7 @@
 #include "jobs/capture_bench.h"
 #include "jobs/watched_captures.h"
 #include "projection/desktop_watch.h"
-#include "projection/picture_port.h"
+#include "projection/projector_screen.h"
 #include "scene/library.h"
 
 namespace livery {

@@ -9,7 +9,7 @@
 #include "cli/console.h"
 #include "gl/window.h"
 #include "projection/desktop_watch.h"
-#include "projection/picture_port.h"
+#include "projection/projector_screen.h"
 
 namespace livery {
 

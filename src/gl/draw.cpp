@@ -2,7 +2,7 @@
 
 #include <epoxy/gl.h>
 
-#include "gl/check.h"
+#include "gl/program.h"
 #include "gl/timer.h"
 
 namespace livery {

@@ -7,7 +7,7 @@
 #include <epoxy/gl.h>
 
 #include "core/error.h"
-#include "gl/check.h"
+#include "gl/program.h"
 
 namespace livery {
 namespace {

@@ -10,7 +10,7 @@
 #include "core/progress.h"
 #include "core/random.h"
 #include "ledger/level.h"
-#include "radiance/lanes/lane_shading.h"
+#include "radiance/lanes/lane_functions.h"
 #include "radiance/lanes/shading_in_double.h"
 
 namespace livery {

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 
 #include "appearance/subsurface/translucent_paint.h"
-#include "radiance/relief_map.h"
+#include "radiance/artwork_inputs.h"
 #include "scene/product.h"
 
 namespace livery {

@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "core/worst_error.h"
-#include "radiance/frame_geometry.h"
+#include "radiance/renderer.h"
 #include "radiance/surface_map.h"
 #include "tracing/tracer.h"
 

@@ -15,7 +15,7 @@
 #include "gl/draw.h"
 #include "gl/program.h"
 #include "gl/read_back.h"
-#include "radiance/measured_textures.h"
+#include "radiance/shading.h"
 
 namespace livery {
 

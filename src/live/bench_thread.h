@@ -1,4 +1,4 @@
-// The simulated bench on a thread of its own: its photograph of the mock-up, and its calibration.
+// The bench's photographs for people to look at, without any calibration.
 #pragma once
 
 #include <cstdint>
@@ -8,12 +8,27 @@
 #include <optional>
 #include <string>
 
+#include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 
+#include "core/bench_ports.h"
 #include "core/image.h"
+#include "jobs/picture.h"
+#include "mesh/mesh.h"
 #include "scene/product.h"
+#include "twin/description.h"
 
 namespace livery {
+
+/// From linear camera colour a second to XYZ, exact for a neutral surface under the projector's
+/// primaries; a white diffuser that faces full red + green + blue has Y = 1.
+glm::dmat3 xyz_from_bench_camera(const BenchDescription& bench);
+
+/// A photograph as sRGB where `white_y` is white; 0: its 99.9th percentile.
+Image8 srgb_from_photograph(const Photograph& photograph,
+                            const BenchDescription& bench,
+                            const PixelRectangle& part,
+                            double white_y);
 
 struct BenchPhotograph {
     std::uint64_t number = 0;  ///< of the frame that it shows

@@ -10,7 +10,6 @@
 #include "core/memory.h"
 #include "core/paths.h"
 #include "jobs/capture_bench.h"
-#include "live/capture_pictures.h"
 #include "live/capture_work.h"
 #include "live/low_priority.h"
 

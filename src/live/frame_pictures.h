@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "core/image.h"
-#include "gl/fence.h"
+#include "gl/timer.h"
 #include "gl/handles.h"
 
 namespace livery {

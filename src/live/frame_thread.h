@@ -13,7 +13,7 @@
 
 #include "appearance/material_library.h"
 #include "gl/context.h"
-#include "gl/fence.h"
+#include "gl/timer.h"
 #include "live/frame_pictures.h"
 #include "live/projector_setup.h"
 #include "radiance/lanes/input_layers.h"

@@ -11,7 +11,7 @@
 
 #include "core/image.h"
 #include "gl/context.h"
-#include "gl/fence.h"
+#include "gl/timer.h"
 #include "scene/scene.h"
 #include "scene/view.h"
 

@@ -1,4 +1,5 @@
-// A calibration ready to correct pictures with, and the projector that it is of.
+// A calibration ready to correct pictures with, and the projector that it is of; and which
+// simulated bench a kept calibration was made on, so that a new session need not make it again.
 #pragma once
 
 #include <filesystem>
@@ -18,6 +19,16 @@
 #include "twin/bench.h"
 
 namespace livery {
+
+/// A hash of all that a calibration on this bench is made from: the bench's file with the files
+/// that it names, the mock-up's shape, and how this version calibrates. Throws FileError.
+std::string bench_key(const std::string& bench, const Product& product);
+
+/// Notes in a calibration's folder what it was made on. Throws FileError.
+void note_bench(const std::filesystem::path& calibration, const std::string& key);
+
+/// The newest of the kept calibrations that was made on this; nothing: there is none.
+std::optional<std::filesystem::path> kept_calibration_of(const std::string& key);
 
 /// Immutable and shared: the frame thread, the panels and the bench read the same one.
 struct ProjectorSetup {

@@ -3,7 +3,7 @@
 
 #include <optional>
 
-#include "compensation/shown.h"
+#include "compensation/lit_pixels.h"
 #include "core/image.h"
 #include "live/projector_setup.h"
 

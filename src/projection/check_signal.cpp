@@ -11,7 +11,6 @@
 
 #include "projection/desktop_watch.h"
 #include "projection/outputs.h"
-#include "projection/x_connection.h"
 
 namespace livery {
 

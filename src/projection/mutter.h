@@ -9,7 +9,7 @@
 
 #include <glm/vec2.hpp>
 
-#include "projection/display_identity.h"
+#include "projection/monitors.h"
 #include "projection/outputs.h"
 
 struct DBusMessage;

@@ -2,16 +2,24 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include <glm/geometric.hpp>
+#include <xcb/shape.h>
 
 #include "core/error.h"
+#include "projection/monitors.h"
+#include "projection/outputs.h"
+#include "projection/projector_screen.h"
 
 namespace livery {
+
 namespace {
 
 // A digit is one unit tall, rows down; a stroke is what a round pen of this radius leaves.
@@ -177,6 +185,209 @@ void draw_number(Image8& picture,
             }
         }
     }
+}
+
+namespace {
+
+constexpr int kDigitHeight_px = 300;
+constexpr double kMargin = 0.36, kCorner = 0.2;  // of the digits' height
+constexpr glm::u8vec3 kTile{24, 26, 30}, kInk{255, 255, 255};
+
+Image8 tile_picture(int number, int digit_px) {
+    const int margin = static_cast<int>(std::lround(kMargin * digit_px));
+    const int height = digit_px + 2 * margin;
+    const int width = std::max(
+        height, static_cast<int>(std::ceil(number_width_px(number, digit_px))) + 2 * margin);
+    Image8 picture(width, height, 3);
+    for (std::size_t i = 0; i < picture.values.size(); ++i) {
+        picture.values[i] = kTile[static_cast<int>(i % 3)];
+    }
+    draw_number(picture, number, {width * 0.5, height * 0.5}, digit_px, kInk);
+    return picture;
+}
+
+/// The rows of a rectangle with round corners.
+std::vector<xcb_rectangle_t> rounded(int width, int height, double radius) {
+    std::vector<xcb_rectangle_t> rows;
+    for (int y = 0; y < height; ++y) {
+        const double from_edge = std::min(y + 0.5, height - y - 0.5);
+        const double up = std::max(0.0, radius - from_edge);
+        const int inset =
+            static_cast<int>(std::lround(radius - std::sqrt(radius * radius - up * up)));
+        rows.push_back({static_cast<std::int16_t>(inset),
+                        static_cast<std::int16_t>(y),
+                        static_cast<std::uint16_t>(width - 2 * inset),
+                        1});
+    }
+    return rows;
+}
+
+const xcb_visualtype_t& root_visual(const XConnection& x) {
+    for (auto depth = xcb_screen_allowed_depths_iterator(&x.screen()); depth.rem != 0;
+         xcb_depth_next(&depth)) {
+        for (auto visual = xcb_depth_visuals_iterator(depth.data); visual.rem != 0;
+             xcb_visualtype_next(&visual)) {
+            if (visual.data->visual_id == x.screen().root_visual) return *visual.data;
+        }
+    }
+    throw std::runtime_error("the X server does not describe its own screen");
+}
+
+/// A channel's bits in a pixel of the screen.
+std::uint32_t packed(std::uint8_t value, std::uint32_t mask) {
+    const auto most = mask >> std::countr_zero(mask);
+    return static_cast<std::uint32_t>((std::uint64_t{value} * most + 127u) / 255u)
+           << std::countr_zero(mask);
+}
+
+xcb_pixmap_t upload(const XConnection& x, const Image8& picture) {
+    auto* c = x.get();
+    const auto& visual = root_visual(x);
+    std::vector<std::uint32_t> pixels;
+    pixels.reserve(picture.pixel_count());
+    for (std::size_t i = 0; i < picture.pixel_count(); ++i) {
+        const auto* rgb = picture.values.data() + 3 * i;
+        pixels.push_back(packed(rgb[0], visual.red_mask) | packed(rgb[1], visual.green_mask) |
+                         packed(rgb[2], visual.blue_mask));
+    }
+    const auto width = static_cast<std::uint16_t>(picture.width);
+    const auto height = static_cast<std::uint16_t>(picture.height);
+    const xcb_pixmap_t pixmap = xcb_generate_id(c);
+    const xcb_gcontext_t context = xcb_generate_id(c);
+    xcb_create_pixmap(c, x.screen().root_depth, pixmap, x.root(), width, height);
+    xcb_create_gc(c, context, pixmap, 0, nullptr);
+    for (int y = 0; y < picture.height; ++y) {  // a row always fits into a request
+        xcb_put_image(c,
+                      XCB_IMAGE_FORMAT_Z_PIXMAP,
+                      pixmap,
+                      context,
+                      width,
+                      1,
+                      0,
+                      static_cast<std::int16_t>(y),
+                      0,
+                      x.screen().root_depth,
+                      4u * width,
+                      reinterpret_cast<const std::uint8_t*>(pixels.data() +
+                                                            static_cast<std::size_t>(y) * width));
+    }
+    xcb_free_gc(c, context);
+    return pixmap;
+}
+
+/// The server paints the background by itself whenever the window is uncovered: nothing here has to
+/// run while the numbers are shown.
+void show_tile(const XConnection& x, const Monitor& monitor) {
+    auto* c = x.get();
+    const int digit_px = std::min(kDigitHeight_px, monitor.height * 2 / 5);
+    const Image8 picture = tile_picture(monitor.number, digit_px);
+    const xcb_pixmap_t pixmap = upload(x, picture);
+    const xcb_window_t window = xcb_generate_id(c);
+    const std::array<std::uint32_t, 2> values = {pixmap, 1};
+    xcb_create_window(c,
+                      XCB_COPY_FROM_PARENT,
+                      window,
+                      x.root(),
+                      static_cast<std::int16_t>(monitor.x + (monitor.width - picture.width) / 2),
+                      static_cast<std::int16_t>(monitor.y + (monitor.height - picture.height) / 2),
+                      static_cast<std::uint16_t>(picture.width),
+                      static_cast<std::uint16_t>(picture.height),
+                      0,
+                      XCB_WINDOW_CLASS_INPUT_OUTPUT,
+                      XCB_COPY_FROM_PARENT,
+                      XCB_CW_BACK_PIXMAP | XCB_CW_OVERRIDE_REDIRECT,
+                      values.data());
+    xcb_free_pixmap(c, pixmap);
+    mark_as_overlay(x, window);
+    if (x.has(xcb_shape_id)) {
+        const auto rows = rounded(picture.width, picture.height, kCorner * digit_px);
+        xcb_shape_rectangles(c,
+                             XCB_SHAPE_SO_SET,
+                             XCB_SHAPE_SK_BOUNDING,
+                             XCB_CLIP_ORDERING_UNSORTED,
+                             window,
+                             0,
+                             0,
+                             static_cast<std::uint32_t>(rows.size()),
+                             rows.data());
+        // The pointer goes through.
+        xcb_shape_rectangles(c,
+                             XCB_SHAPE_SO_SET,
+                             XCB_SHAPE_SK_INPUT,
+                             XCB_CLIP_ORDERING_UNSORTED,
+                             window,
+                             0,
+                             0,
+                             0,
+                             nullptr);
+    }
+    xcb_map_window(c, window);
+}
+
+}  // namespace
+
+struct MonitorNumbers::Implementation {
+    XConnection x;  ///< its end takes the windows along
+};
+
+MonitorNumbers::MonitorNumbers(const std::vector<Monitor>& monitors)
+    : implementation_(std::make_unique<Implementation>()) {
+    for (const auto& monitor : monitors) show_tile(implementation_->x, monitor);
+    implementation_->x.synchronise();
+}
+
+MonitorNumbers::~MonitorNumbers() = default;
+
+namespace {
+
+// Limited range ends at 16 and 235: what lies beyond merges with black or white when a projector
+// takes full levels for limited ones.
+constexpr std::array<std::uint8_t, 7> kDark = {0, 4, 8, 12, 16, 20, 24};
+constexpr std::array<std::uint8_t, 7> kBright = {255, 251, 247, 243, 239, 235, 231};
+constexpr int kLabelDistance = 48;  // readable, and too faint to blind the eye
+
+void fill(Image8& picture, int x0, int y0, int x1, int y1, std::uint8_t level) {
+    for (int y = std::max(0, y0); y < std::min(picture.height, y1); ++y) {
+        std::fill(picture.pixel(0, y) + 3 * x0, picture.pixel(0, y) + 3 * x1, level);
+    }
+}
+
+/// One row of patches on the row's first level, each with its level above it.
+void draw_row(Image8& picture, int top, int bottom, const std::array<std::uint8_t, 7>& levels) {
+    const int height = bottom - top;
+    const int label_px = height / 12;
+    const auto label =
+        static_cast<std::uint8_t>(levels.front() == 0 ? kLabelDistance : 255 - kLabelDistance);
+    // What is left of this is the line around the picture, which overscan cuts off.
+    fill(picture, 0, top, picture.width, bottom, label);
+    fill(picture,
+         1,
+         std::max(top, 1),
+         picture.width - 1,
+         std::min(bottom, picture.height - 1),
+         levels.front());
+    const int count = static_cast<int>(levels.size());
+    for (int i = 0; i < count; ++i) {
+        const auto level = levels[static_cast<std::size_t>(i)];
+        const int gap = picture.width / (count * 8);
+        const int x0 = picture.width * i / count + gap;
+        const int x1 = picture.width * (i + 1) / count - gap;
+        fill(picture, x0, top + height * 3 / 10, x1, bottom - height / 10, level);
+        draw_number(
+            picture, level, {0.5 * (x0 + x1), top + 0.18 * height}, label_px, glm::u8vec3(label));
+    }
+}
+
+}  // namespace
+
+Image8 signal_test_picture(int width, int height) {
+    check_argument(width >= 64 && height >= 64,
+                   "a signal test picture of " + std::to_string(width) + "x" +
+                       std::to_string(height) + " pixels; at least 64x64");
+    Image8 picture(width, height, 3);
+    draw_row(picture, 0, height / 2, kDark);
+    draw_row(picture, height / 2, height, kBright);
+    return picture;
 }
 
 }  // namespace livery

@@ -1,4 +1,5 @@
-// Large numbers as geometry: read from across a room, and no font to look for.
+// Pictures to identify and test monitors with: large numbers as geometry, read from across a room
+// with no font to look for.
 #pragma once
 
 #include <cstdint>

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <stdexcept>
 #include <tuple>
 
 #include <xcb/randr.h>
@@ -9,6 +10,50 @@
 #include "projection/desktop_watch.h"
 
 namespace livery {
+
+XConnection::XConnection() {
+    int screen_number = 0;
+    connection_ = xcb_connect(nullptr, &screen_number);
+    if (xcb_connection_has_error(connection_) != 0) {
+        xcb_disconnect(connection_);
+        const char* display = std::getenv("DISPLAY");
+        throw std::runtime_error(
+            "no X server answers at DISPLAY=" + std::string(display ? display : "") +
+            ". The projector needs a desktop on Xorg, or Xwayland");
+    }
+    auto screens = xcb_setup_roots_iterator(xcb_get_setup(connection_));
+    for (int i = 0; i < screen_number; ++i) xcb_screen_next(&screens);
+    screen_ = screens.data;
+}
+
+XConnection::~XConnection() { xcb_disconnect(connection_); }
+
+xcb_atom_t XConnection::atom(std::string_view name) const {
+    const auto cookie =
+        xcb_intern_atom(connection_, false, static_cast<std::uint16_t>(name.size()), name.data());
+    const XReply<xcb_intern_atom_reply_t> reply(
+        xcb_intern_atom_reply(connection_, cookie, nullptr));
+    return reply ? reply->atom : xcb_atom_t{XCB_ATOM_NONE};
+}
+
+std::string XConnection::atom_name(xcb_atom_t atom) const {
+    const XReply<xcb_get_atom_name_reply_t> reply(
+        xcb_get_atom_name_reply(connection_, xcb_get_atom_name(connection_, atom), nullptr));
+    if (!reply) return {};
+    return {xcb_get_atom_name_name(reply.get()),
+            static_cast<std::size_t>(xcb_get_atom_name_name_length(reply.get()))};
+}
+
+bool XConnection::has(xcb_extension_t& extension) const {
+    const auto* data = xcb_get_extension_data(connection_, &extension);
+    return data != nullptr && data->present != 0;
+}
+
+void XConnection::synchronise() const {
+    const XReply<xcb_get_input_focus_reply_t> reply(
+        xcb_get_input_focus_reply(connection_, xcb_get_input_focus(connection_), nullptr));
+}
+
 namespace {
 
 double refresh_hz(const xcb_randr_mode_info_t& mode) {
@@ -142,6 +187,63 @@ std::vector<Output> read_outputs(const XConnection& x, DesktopWatch* desktop) {
     }
     if (desktop) desktop->name_outputs(list);
     return list;
+}
+
+namespace {
+
+constexpr const char* kOverlayProperty = "_LIVERY_OVERLAY";
+
+bool is_visible_in(const XConnection& x, xcb_window_t window, const Monitor& area) {
+    auto* c = x.get();
+    const XReply<xcb_get_window_attributes_reply_t> attributes(
+        xcb_get_window_attributes_reply(c, xcb_get_window_attributes(c, window), nullptr));
+    const XReply<xcb_get_geometry_reply_t> geometry(
+        xcb_get_geometry_reply(c, xcb_get_geometry(c, window), nullptr));
+    if (!attributes || !geometry || attributes->map_state != XCB_MAP_STATE_VIEWABLE ||
+        attributes->_class != XCB_WINDOW_CLASS_INPUT_OUTPUT) {
+        return false;
+    }
+    Monitor place;
+    place.x = geometry->x;
+    place.y = geometry->y;
+    place.width = geometry->width + 2 * geometry->border_width;
+    place.height = geometry->height + 2 * geometry->border_width;
+    return overlap(place, area);
+}
+
+}  // namespace
+
+void mark_as_overlay(const XConnection& x, std::uint32_t window) {
+    const std::uint32_t yes = 1;
+    xcb_change_property(x.get(),
+                        XCB_PROP_MODE_REPLACE,
+                        window,
+                        x.atom(kOverlayProperty),
+                        XCB_ATOM_CARDINAL,
+                        32,
+                        1,
+                        &yes);
+}
+
+bool is_covered_by_others(const XConnection& x, std::uint32_t window, const Monitor& area) {
+    const XReply<xcb_query_tree_reply_t> tree(
+        xcb_query_tree_reply(x.get(), xcb_query_tree(x.get(), x.root()), nullptr));
+    if (!tree) return false;
+    const xcb_atom_t overlay = x.atom(kOverlayProperty);
+    const auto is_marked = [&](xcb_window_t other) {
+        const auto cookie =
+            xcb_get_property(x.get(), false, other, overlay, XCB_ATOM_CARDINAL, 0, 1);
+        const XReply<xcb_get_property_reply_t> mark(
+            xcb_get_property_reply(x.get(), cookie, nullptr));
+        return mark && mark->type != XCB_ATOM_NONE;
+    };
+    // Lowest first.
+    const auto* children = xcb_query_tree_children(tree.get());
+    const auto* end = children + xcb_query_tree_children_length(tree.get());
+    const auto* own = std::find(children, end, window);
+    return own != end && std::any_of(own + 1, end, [&](xcb_window_t other) {
+               return is_visible_in(x, other, area) && !is_marked(other);
+           });
 }
 
 }  // namespace livery

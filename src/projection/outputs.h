@@ -1,17 +1,51 @@
-// RandR's outputs that show something, as values.
+// The X server as this folder uses it: a connection of its own, RandR's outputs that show
+// something, and what lies above the projector's window.
 #pragma once
 
 #include <cstdint>
+#include <cstdlib>
+#include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <glm/vec2.hpp>
+#include <xcb/xcb.h>
 
 #include "projection/monitors.h"
-#include "projection/x_connection.h"
 
 namespace livery {
+
+struct FreeReply {
+    void operator()(void* reply) const { std::free(reply); }
+};
+/// What xcb's *_reply functions give; null where the server answered with an error.
+template <typename T>
+using XReply = std::unique_ptr<T, FreeReply>;
+
+class XConnection {
+  public:
+    XConnection();  ///< to DISPLAY; throws std::runtime_error
+    ~XConnection();
+    XConnection(const XConnection&) = delete;
+    XConnection& operator=(const XConnection&) = delete;
+
+    xcb_connection_t* get() const { return connection_; }
+    const xcb_screen_t& screen() const { return *screen_; }
+    xcb_window_t root() const { return screen_->root; }
+    bool is_alive() const { return xcb_connection_has_error(connection_) == 0; }
+
+    xcb_atom_t atom(std::string_view name) const;
+    std::string atom_name(xcb_atom_t atom) const;  ///< empty: no such atom
+    bool has(xcb_extension_t& extension) const;
+    /// Returns when the server has done everything asked so far; what failed is not told.
+    void synchronise() const;
+
+  private:
+    xcb_connection_t* connection_ = nullptr;
+    xcb_screen_t* screen_ = nullptr;
+};
 
 struct Output {
     Monitor monitor;
@@ -37,5 +71,11 @@ std::vector<std::uint8_t> output_property(const XConnection& x,
 void name_output(Output& output, const std::string& socket, const DisplayIdentity& identity);
 
 bool overlap(const Monitor& a, const Monitor& b);
+
+/// A window of ours that may lie above the picture.
+void mark_as_overlay(const XConnection& x, std::uint32_t window);
+
+/// Whether a window that was not marked so lies above `window` in that area.
+bool is_covered_by_others(const XConnection& x, std::uint32_t window, const Monitor& area);
 
 }  // namespace livery

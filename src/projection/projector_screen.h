@@ -11,7 +11,10 @@
 
 #include <glm/vec2.hpp>
 
-#include "gl/fence.h"
+#include "core/bench_ports.h"
+#include "core/image.h"
+#include "core/progress.h"
+#include "gl/timer.h"
 #include "gl/window.h"
 #include "projection/monitors.h"
 
@@ -91,5 +94,24 @@ class MonitorNumbers {
     struct Implementation;
     std::unique_ptr<Implementation> implementation_;
 };
+
+/// Device values, RGB, as a picture for the projector: uploaded in the current context.
+std::shared_ptr<const ProjectorPicture> projector_picture(const Image8& rgb, std::uint64_t number);
+
+/// Above all frames' numbers, and no two alike: for pictures that are shown instead of frames. Any
+/// thread.
+std::uint64_t next_picture_number();
+
+/// How a capture reaches the projector; all of it from any thread.
+struct ProjectorAccess {
+    std::function<void(std::shared_ptr<const ProjectorPicture>)> present;
+    std::function<ShownPicture()> shown;
+};
+
+/// The projector as a port, for a thread that has a context of its share group current. Returns
+/// when the picture was swapped in and two refreshes of a projector have passed. While it does not
+/// appear (cable pulled, black, frozen) `on_wait` is told and it is waited for, until a stop is
+/// asked for (Cancelled).
+ShowPicture show_on(ProjectorAccess projector, const Progress& progress, TellWait on_wait);
 
 }  // namespace livery

@@ -7,6 +7,7 @@
 #include <dbus/dbus.h>
 
 namespace livery {
+
 namespace {
 
 constexpr int kTimeout_ms = 200;

@@ -17,11 +17,8 @@
 
 #include "core/log.h"
 #include "projection/desktop_watch.h"
-#include "projection/doorbell.h"
-#include "projection/outputs.h"
 #include "projection/session_bus.h"
-#include "projection/stacking.h"
-#include "projection/x_connection.h"
+#include "projection/outputs.h"
 
 namespace livery {
 

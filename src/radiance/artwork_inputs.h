@@ -1,19 +1,49 @@
-// How much of each fragment an artwork covers, and with what: solved on the CPU once a pose, and
-// again when the artwork moves or its picture changes, never for another paint.
+// What artwork does to fragments: how much of each it covers, and with what, and how pictures of
+// normals tilt them. Solved on the processor once a pose, and again when artwork moves or its
+// picture changes, never for another paint.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <vector>
 
-#include "radiance/artwork_footprint.h"
 #include "radiance/lanes/input_layers.h"
 #include "radiance/packed_fragments.h"
 #include "radiance/surface_map.h"
+#include "scene/artwork_coats.h"
 #include "scene/artwork_cover.h"
 #include "scene/scene.h"
 #include "scene/view.h"
 
 namespace livery {
+
+/// Sides of a pixel where its rays meet the surface's tangent plane, in mm. Where the surface turns
+/// away from the view they grow no further than to thirty times a pixel that faces it.
+struct Footprint {
+    glm::dvec3 a{0.0}, b{0.0};
+};
+Footprint footprint_of(const View& view,
+                       std::uint32_t pixel,
+                       const glm::dvec3& position_mm,
+                       const glm::dvec3& normal);
+/// Of every fragment of a part.
+std::vector<Footprint> footprints_of(const View& view, const SurfaceMap& map, std::size_t part);
+
+/// A footprint in an artwork's plane, or along the mesh's texture coordinates.
+struct FlatFootprint {
+    glm::dvec2 at{0.0}, a{0.0}, b{0.0};
+};
+/// `plane` is plane_of() the artwork's place.
+FlatFootprint flat_footprint(const Mesh& mesh,
+                             const SurfaceMap& map,
+                             std::size_t fragment,
+                             const Footprint& footprint,
+                             const PartArtwork& artwork,
+                             const ArtworkPlane& plane);
+
+/// The map with the scene's reliefs: mean normals tilted by the mean slope over the pixel, their
+/// variance larger by the slopes'. `map` is without any.
+SurfaceMap relieved(const SurfaceMap& map, const Scene& scene, const View& view);
 
 class ArtworkInputs {
   public:

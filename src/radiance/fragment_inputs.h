@@ -12,7 +12,7 @@
 #include "radiance/light/environment_filter.h"
 #include "radiance/light/interreflection.h"
 #include "radiance/light/light_visibility.h"
-#include "radiance/light/mirror_look_up.h"
+#include "radiance/light/mirrored_environment.h"
 #include "radiance/light/sky_visibility.h"
 #include "radiance/mirror_inputs.h"
 #include "radiance/packed_fragments.h"

@@ -10,7 +10,7 @@
 #include "core/colour.h"
 #include "core/mutation.h"
 #include "radiance/fragment_inputs.h"
-#include "radiance/largest_half.h"
+#include "radiance/packed_fragments.h"
 
 namespace livery {
 namespace {

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "core/parallel.h"
-#include "radiance/largest_half.h"
+#include "radiance/packed_fragments.h"
 #include "radiance/light/mirrored_environment.h"
 
 namespace livery {

@@ -1,5 +1,4 @@
-// Fragments in dense textures: each part starts on a row of its own, so that shading a part is one
-// rectangle without a wasted pixel but in its last row.
+// What pictures of half floats may hold.
 #pragma once
 
 #include <cstddef>
@@ -14,6 +13,9 @@
 #include "radiance/surface_map.h"
 
 namespace livery {
+
+/// A little below the largest half float, 65504: sums that round up stay finite.
+inline constexpr float kLargestHalf = 65000.0f;
 
 inline constexpr int kPackedWidth = 1024;
 

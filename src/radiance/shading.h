@@ -1,4 +1,4 @@
-// The shading programs, one for each combination that a scene uses, and what they read.
+// The grids of measured paints as textures, each uploaded once for as long as its paint lives.
 #pragma once
 
 #include <array>
@@ -7,23 +7,36 @@
 #include <set>
 #include <span>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include <glm/vec3.hpp>
 
+#include "appearance/measured/measured_paint.h"
 #include "appearance/model_table.h"
 #include "appearance/paint_bsdf.h"
 #include "gl/draw.h"
 #include "gl/handles.h"
 #include "gl/program.h"
 #include "radiance/lanes/input_layers.h"
-#include "radiance/lanes/lane_shading.h"
+#include "radiance/lanes/lane_functions.h"
 #include "radiance/light/mirror_lobes.h"
-#include "radiance/measured_textures.h"
 #include "scene/artwork_coats.h"
 #include "scene/look.h"
 
 namespace livery {
+
+/// Needs a current context from the first use to its end.
+class MeasuredTextures {
+  public:
+    void bind(const std::shared_ptr<const MeasuredPaint>& paint, unsigned unit);
+
+  private:
+    std::vector<std::pair<std::weak_ptr<const MeasuredPaint>, Texture2D>> textures_;
+};
+
+/// A layer for each theta_d (shaders/bsdf/measured.glsl).
+Texture2D texture_of(const MeasuredGrid& grid);
 
 /// In the packed layout; those that no paint of the scene reads stay empty.
 struct ShadingInputs {

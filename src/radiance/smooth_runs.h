@@ -1,5 +1,5 @@
-// Fragments between two others of an even surface: what changes slowly over it is worked out at
-// some of them, and taken from both ends in between.
+// What fragments share with their neighbours: rays toward one surface, and all that changes so
+// slowly over it that it is worked out at some and mixed between.
 #pragma once
 
 #include <algorithm>
@@ -11,6 +11,29 @@
 #include "radiance/surface_map.h"
 
 namespace livery {
+
+/// Every block of 4 x 2 pixels has one fragment of each turn.
+inline constexpr std::size_t kNeighbourTurns = 8;
+std::size_t neighbour_turn(const SurfaceMap& map, std::size_t fragment);
+
+/// Finds, around a fragment, those that continue its surface.
+class FragmentNeighbours {
+  public:
+    explicit FragmentNeighbours(const SurfaceMap& map);
+
+    struct Neighbour {
+        std::size_t fragment = 0;
+        std::size_t turn = 0;
+        float weight = 0.0f;  ///< falls off with distance
+    };
+    /// The fragment itself and those up to two pixels away: of its part, in its tangent plane.
+    void around(std::size_t fragment, std::vector<Neighbour>& found) const;
+
+  private:
+    const SurfaceMap& map_;
+    std::vector<std::uint32_t> first_;   ///< of each pixel among sorted_, and one more
+    std::vector<std::uint32_t> sorted_;  ///< fragments by pixel
+};
 
 /// Of each fragment, which two its value lies between: in its row, or in its column between two
 /// rows of which the same is true. They and all between them are whole pixels of one part, whose

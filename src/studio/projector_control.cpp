@@ -4,7 +4,7 @@
 
 #include "core/log.h"
 #include "projection/desktop_watch.h"
-#include "projection/picture_port.h"
+#include "projection/projector_screen.h"
 #include "studio/calibration_panel.h"
 #include "studio/nudge/nudge_panel.h"
 #include "studio/presenting/presenting.h"

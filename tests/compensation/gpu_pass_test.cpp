@@ -8,7 +8,7 @@
 
 #include "compensation/white_segment.h"
 #include "core/error.h"
-#include "gl/check.h"
+#include "gl/program.h"
 #include "gl/context.h"
 #include "gl/handles.h"
 #include "gl/read_back.h"

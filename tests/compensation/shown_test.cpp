@@ -1,5 +1,5 @@
 // What a drive shows, against worlds that are known exactly.
-#include "compensation/shown.h"
+#include "compensation/lit_pixels.h"
 
 #include <cmath>
 #include <cstdio>

@@ -10,7 +10,6 @@
 
 #include "core/error.h"
 #include "core/paths.h"
-#include "gl/check.h"
 #include "gl/context.h"
 #include "support/gl_device.h"
 

@@ -6,8 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "core/paths.h"
-#include "live/bench_picture.h"
-#include "live/calibration_reuse.h"
+#include "live/projector_setup.h"
 #include "live/contexts.h"
 #include "live/orbit.h"
 #include "scene/library.h"

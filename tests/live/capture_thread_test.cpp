@@ -13,7 +13,7 @@
 #include "core/json.h"
 #include "core/paths.h"
 #include "core/pictures/white_balance.h"
-#include "live/capture_pictures.h"
+#include "live/capture_work.h"
 #include "live/projector_setup.h"
 #include "scene/library.h"
 #include "session/small_session.h"

@@ -14,7 +14,6 @@
 #include "gl/read_back.h"
 #include "live/orbit.h"
 #include "live/preview_picture.h"
-#include "live/swatches.h"
 #include "scene/library.h"
 
 namespace livery {

@@ -1,4 +1,4 @@
-#include "live/swatches.h"
+#include "live/preview_picture.h"
 
 #include <atomic>
 #include <cstdlib>

@@ -5,7 +5,7 @@
 #include "fake_desktop_bus.h"
 #include "projection/check_signal.h"
 #include "projection/session_bus.h"
-#include "projection/x_connection.h"
+#include "projection/outputs.h"
 #include "stage.h"
 
 namespace livery {

@@ -5,7 +5,7 @@
 #include <string>
 #include <thread>
 
-#include "projection/x_connection.h"
+#include "projection/outputs.h"
 #include "support/desktop.h"
 
 namespace livery {

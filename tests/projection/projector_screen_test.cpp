@@ -12,7 +12,7 @@
 
 #include "gl/draw.h"
 #include "pointer.h"
-#include "projection/x_connection.h"
+#include "projection/outputs.h"
 #include "stage.h"
 
 namespace livery {

@@ -8,7 +8,7 @@
 #include <tuple>
 #include <vector>
 
-#include "gl/check.h"
+#include "gl/program.h"
 #include "gl/handles.h"
 #include "gl/window.h"
 #include "projection/projector_screen.h"

@@ -9,7 +9,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "radiance/lanes/mirror_sums.h"
+#include "radiance/lanes/lane_functions.h"
 #include "radiance/light/sphere_lookup.h"
 #include "radiance/light/spherical_harmonics.h"
 
@@ -213,7 +213,7 @@ glm::vec3 seen_along(const GaussianLayers& layers,
                      const Environment& sky,
                      const glm::dvec3& direction,
                      float variance,
-                     const MirrorSums& sums) {
+                     const LaneFunctions& sums) {
     std::array<float, kRowLists * kNodeBlock> row{};
     std::fill_n(row.begin() + kHalfVectorZ * kNodeBlock, kNodeBlock, 1.0f);
     row[kVariance * kNodeBlock] = variance;
@@ -240,7 +240,7 @@ glm::vec3 seen_along(const GaussianLayers& layers,
     job.lobe_count = 1;
     job.light = light.data();
     job.sums = sum.data();
-    sums.sum(job);
+    sums.sum_mirrored(job);
     return {sum[0], sum[1], sum[2]};
 }
 
@@ -258,8 +258,8 @@ TEST(EnvironmentFilter, GaussiansMixToTheVarianceAskedFor) {
          {glm::dvec3(1, 0.1, 0.2), glm::dvec3(0.1, 1, 0), glm::dvec3(-1, -1, 1)}) {
         const glm::dvec3 d = glm::normalize(to);
         for (const double v : {0.0, 1e-4, 2e-4, 3e-4, 1e-3, 5e-3, 7e-3, 0.01, 0.03, 0.15, 0.4}) {
-            for (std::size_t k = 0; k < mirror_sums_available(); ++k) {
-                const MirrorSums& sums = mirror_sums_available(k);
+            for (std::size_t k = 0; k < lanes_available(); ++k) {
+                const LaneFunctions& sums = lanes_available(k);
                 SCOPED_TRACE(::testing::Message() << sums.instruction_set << " " << v);
                 const glm::vec3 found = seen_along(layers, sky, d, static_cast<float>(v), sums);
                 const double tolerance = 1e-3 + 0.5 * v * v;

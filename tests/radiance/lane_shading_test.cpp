@@ -1,5 +1,3 @@
-#include "radiance/lanes/lane_shading.h"
-
 #include <array>
 #include <cmath>
 #include <functional>
@@ -11,6 +9,7 @@
 
 #include "appearance/bsdf.h"
 #include "appearance/model_table.h"
+#include "radiance/lanes/lane_functions.h"
 #include "radiance/light/mirror_quadrature.h"
 
 namespace livery {

@@ -1,5 +1,3 @@
-#include "radiance/light/mirror_look_up.h"
-
 #include <array>
 #include <cmath>
 #include <limits>
@@ -10,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "radiance/light/mirror_quadrature.h"
+#include "radiance/light/mirrored_environment.h"
 #include "radiance/light/sky_visibility.h"
 
 namespace livery {
@@ -83,9 +82,9 @@ TEST(MirrorLookUp, IsTheFilteredPictureOfEachLobeWithEveryInstructionSet) {
         f.position_mm = 200.0f * glm::vec3(normal(random), normal(random), normal(random));
         f.normal_variance = i % 3 == 0 ? 0.0f : i % 3 == 1 ? 2e-4f : 0.3f;
     }
-    for (std::size_t set = 0; set < mirror_sums_available(); ++set) {
-        SCOPED_TRACE(mirror_sums_available(set).instruction_set);
-        const MirrorLookUp::In in(look_up, environment, eye_mm, lobes, mirror_sums_available(set));
+    for (std::size_t set = 0; set < lanes_available(); ++set) {
+        SCOPED_TRACE(lanes_available(set).instruction_set);
+        const MirrorLookUp::In in(look_up, environment, eye_mm, lobes, lanes_available(set));
         for (std::size_t first = 0; first < fragments.size(); first += 7) {
             std::array<const Fragment*, 7> some;
             for (std::size_t n = 0; n < some.size(); ++n) some[n] = &fragments[first + n];
@@ -122,10 +121,10 @@ TEST(MirrorLookUp, OfWhatIsNoNumberIsNone) {
     fragments[2].normal_variance = -kNone;
     const std::array<const Fragment*, 4> all{
         &fragments[0], &fragments[1], &fragments[2], &fragments[3]};
-    for (std::size_t set = 0; set < mirror_sums_available(); ++set) {
-        SCOPED_TRACE(mirror_sums_available(set).instruction_set);
+    for (std::size_t set = 0; set < lanes_available(); ++set) {
+        SCOPED_TRACE(lanes_available(set).instruction_set);
         const MirrorLookUp::In in(
-            look_up, environment, {100.0, 200.0, 300.0}, lobes, mirror_sums_available(set));
+            look_up, environment, {100.0, 200.0, 300.0}, lobes, lanes_available(set));
         std::array<MirroredLight, kNodeBlock> light;
         in.at_fragments(all, light);
         for (std::size_t lobe = 0; lobe < kMirrorAlphas.size(); ++lobe) {

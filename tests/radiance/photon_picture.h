@@ -17,7 +17,6 @@
 #include "core/image.h"
 #include "core/parallel.h"
 #include "core/random.h"
-#include "reference/part_boundary.h"
 #include "reference/subsurface_walk.h"
 #include "scene/scene.h"
 #include "scene/view.h"

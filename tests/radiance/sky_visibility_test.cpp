@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "radiance/frame_geometry.h"
+#include "radiance/renderer.h"
 #include "renderer_fixture.h"
 #include "scenes.h"
 

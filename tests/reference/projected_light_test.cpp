@@ -1,5 +1,5 @@
 // The path tracer under a projector's picture: closed forms, and light that spreads from an edge.
-#include "reference/projected_light.h"
+#include "reference/light_sampling.h"
 
 #include <cmath>
 #include <limits>

@@ -6,7 +6,7 @@
 
 #include "core/colour.h"
 #include "core/random.h"
-#include "reference/pixel_estimate.h"
+#include "reference/path_tracer.h"
 #include "reference/scenes.h"
 
 namespace livery {

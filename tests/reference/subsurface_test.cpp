@@ -8,9 +8,8 @@
 #include "appearance/subsurface/translucent_paint.h"
 #include "core/colour.h"
 #include "core/parallel.h"
-#include "reference/part_boundary.h"
-#include "reference/scenes.h"
 #include "reference/subsurface_walk.h"
+#include "reference/scenes.h"
 #include "tracing/closed_part.h"
 
 namespace livery {

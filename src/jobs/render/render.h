@@ -13,7 +13,7 @@
 #include "gl/context.h"
 #include "mesh/mesh.h"
 #include "reference/path_tracer.h"
-#include "reference/projected_light.h"
+#include "reference/light_sampling.h"
 #include "scene/frame_plan.h"
 #include "scene/scene.h"
 #include "scene/view.h"

@@ -18,7 +18,7 @@
 #include "core/statistics.h"
 #include "ledger/accuracy/chain_steps.h"
 #include "radiance/artwork_inputs.h"
-#include "radiance/lanes/lane_shading.h"
+#include "radiance/lanes/lane_functions.h"
 #include "reference/sobol.h"
 #include "scene/library.h"
 

@@ -6,7 +6,7 @@
 
 #include "core/image.h"
 #include "core/progress.h"
-#include "radiance/frame_geometry.h"
+#include "radiance/renderer.h"
 #include "scene/scene.h"
 
 namespace livery {

@@ -5,7 +5,7 @@
 
 #include "compensation/compensate.h"
 #include "compensation/compensation.h"
-#include "compensation/shown.h"
+#include "compensation/lit_pixels.h"
 #include "core/error.h"
 #include "core/pictures/picture_means.h"
 #include "core/statistics.h"

@@ -8,7 +8,7 @@
 #include "core/image.h"
 #include "core/progress.h"
 #include "ledger/accuracy/scenes.h"
-#include "radiance/frame_geometry.h"
+#include "radiance/renderer.h"
 #include "radiance/lanes/input_layers.h"
 
 namespace livery {

@@ -7,7 +7,7 @@
 
 #include "core/parallel.h"
 #include "gl/context.h"
-#include "radiance/lanes/lane_shading.h"
+#include "radiance/lanes/lane_functions.h"
 
 namespace livery {
 namespace {

@@ -51,7 +51,7 @@ class InputLayers {
     std::span<const int> places() const { return places_; }
 
     const Texture2D& texture() const { return texture_; }
-    /// For the processor, in blocks of kLaneBlock fragments (lane_shading.h).
+    /// For the processor, in blocks of kLaneBlock fragments (lane_functions.h).
     const float* floats(std::size_t layer) const { return floats_[layer].data(); }
     const std::uint16_t* halves(std::size_t layer) const { return halves_[layer].data(); }
 

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "core/image.h"
-#include "radiance/fragment_index.h"
-#include "radiance/lanes/lane_shading.h"
+#include "radiance/lanes/lane_functions.h"
 #include "radiance/packed_fragments.h"
+#include "radiance/resolve.h"
 #include "radiance/shading.h"
 
 namespace livery {

@@ -18,7 +18,6 @@
 #include "core/random.h"
 #include "radiance/light/light_visibility.h"
 #include "radiance/light/sphere_lookup.h"
-#include "radiance/light/spiral.h"
 #include "scene/artwork_coats.h"
 
 namespace livery {

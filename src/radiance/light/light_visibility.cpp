@@ -10,7 +10,7 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
-#include "radiance/light/spiral.h"
+#include "radiance/light/sphere_lookup.h"
 
 namespace livery {
 namespace {

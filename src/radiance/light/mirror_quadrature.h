@@ -14,7 +14,7 @@
 #include <glm/vec3.hpp>
 
 #include "core/memory.h"
-#include "radiance/lanes/mirror_sums.h"
+#include "radiance/lanes/lane_functions.h"
 #include "radiance/light/mirror_lobes.h"
 #include "radiance/light/sphere_lookup.h"
 

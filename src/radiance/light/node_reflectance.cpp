@@ -9,7 +9,7 @@
 
 #include "appearance/paint_bsdf.h"
 #include "core/parallel.h"
-#include "radiance/light/spiral.h"
+#include "radiance/light/sphere_lookup.h"
 #include "scene/artwork_coats.h"
 
 namespace livery {

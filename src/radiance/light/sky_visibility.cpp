@@ -13,7 +13,7 @@
 #include "core/mutation.h"
 #include "core/parallel.h"
 #include "radiance/light/light_visibility.h"
-#include "radiance/light/spiral.h"
+#include "radiance/light/sphere_lookup.h"
 
 namespace livery {
 namespace {

@@ -1,10 +1,12 @@
-// Many look-ups of an environment: directions to places on its map without trigonometry of the
-// library's, and all of its Gaussians side by side.
+// Directions: look-ups of an environment without trigonometry of their own, and Vogel's spirals,
+// which fill a disc, a cap or a hemisphere evenly, turned for each fragment by an angle of its own
+// so that neighbours make different errors.
 #pragma once
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <numbers>
 #include <span>
@@ -15,11 +17,31 @@
 
 #include "core/image.h"
 #include "core/memory.h"
-#include "radiance/lanes/mirror_sums.h"
+#include "radiance/lanes/lane_functions.h"
 #include "radiance/light/environment_filter.h"
 #include "scene/look.h"
 
 namespace livery {
+
+/// From one point of a spiral to the next.
+inline constexpr double kGoldenAngle_rad = std::numbers::pi * 0.76393202250021030;
+
+/// Two unit vectors that make a right-handed frame with unit `n` (Duff et al. 2017).
+struct Basis {
+    glm::vec3 s, t;
+};
+Basis basis_around(const glm::vec3& n);
+
+/// A fragment's angle in [0, 2 pi): hashes of different purposes have nothing in common.
+double turn_of_fragment_rad(std::size_t fragment, std::uint32_t purpose, std::uint32_t salt);
+
+/// Points around the z axis, put around `axis` (whose basis_around() is `basis`) and turned about
+/// it; as many directions as points.
+void turn_around(std::span<const glm::vec3> points,
+                 const glm::vec3& axis,
+                 const Basis& basis,
+                 double turn_rad,
+                 std::span<glm::vec3> directions);
 
 /// Four floats as one register holds them: red, green, blue, unused.
 using Texel = float __attribute__((vector_size(16)));

@@ -7,7 +7,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "radiance/light/spiral.h"
+#include "radiance/light/sphere_lookup.h"
 
 namespace livery {
 

@@ -12,7 +12,7 @@
 #include <imgui_stdlib.h>
 
 #include "core/error.h"
-#include "projection/picture_port.h"
+#include "projection/projector_screen.h"
 #include "scene/data_sheet.h"
 #include "studio/kit/theme.h"
 #include "studio/kit/user_settings.h"

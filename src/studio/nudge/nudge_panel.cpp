@@ -13,7 +13,7 @@
 
 #include "core/log.h"
 #include "live/projector_setup.h"
-#include "projection/picture_port.h"
+#include "projection/projector_screen.h"
 #include "scene/mockup_mask.h"
 #include "studio/kit/background.h"
 #include "studio/kit/theme.h"

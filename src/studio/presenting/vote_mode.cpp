@@ -15,7 +15,7 @@
 #include "evaluation/presentation_order.h"
 #include "live/frame_pictures.h"
 #include "live/vote_frames.h"
-#include "projection/picture_port.h"
+#include "projection/projector_screen.h"
 #include "studio/look_thumbnails.h"
 #include "studio/presenting/presenting.h"
 #include "studio/presenting/surround.h"

@@ -4,7 +4,7 @@
 #include <exception>
 #include <string>
 
-#include "live/calibration_reuse.h"
+#include "live/projector_setup.h"
 #include "studio/calibration_panel.h"
 #include "studio/kit/words.h"
 #include "studio/window/shell.h"

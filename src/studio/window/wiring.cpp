@@ -7,7 +7,7 @@
 #include <fmt/format.h>
 
 #include "core/log.h"
-#include "live/calibration_reuse.h"
+#include "live/projector_setup.h"
 #include "scene/library.h"
 #include "scene/view.h"
 #include "studio/calibration_panel.h"

@@ -1,4 +1,0 @@
-#if defined(__x86_64__)
-#define LIVERY_LANES avx2
-#include "radiance/lanes/mirror_sums.inc"
-#endif
