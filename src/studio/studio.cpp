@@ -9,8 +9,6 @@
 #include "core/log.h"
 #include "studio/kit/imgui_versions.h"
 #include "studio/kit/theme.h"
-#include "studio/paint/library_panel.h"
-#include "studio/presenting/presenting.h"
 
 namespace livery {
 
@@ -65,7 +63,7 @@ void try_out(Studio& studio, const SessionCommand& command, bool by_arrow) {
 }
 
 void try_held(Studio& studio, const SessionCommand& command) {
-    if (is_presenting(studio)) return;
+    if (is_editing_locked(studio)) return;
     const unsigned item = ImGui::GetItemID();
     if (studio.untried_item == item) {
         studio.untried_item_still_there = true;
@@ -90,6 +88,23 @@ void stop_trying(Studio& studio) {
     }
     studio.tried.reset();
     studio.trying.reset();
+}
+
+std::optional<Notice> editing_lock(const Studio& studio) {
+    for (const Panel& panel : all_panels()) {
+        if (!panel.locks_editing) continue;
+        if (auto why = panel.locks_editing(studio)) return why;
+    }
+    return std::nullopt;
+}
+
+bool is_editing_locked(const Studio& studio) { return editing_lock(studio).has_value(); }
+
+bool refuse_editing(Studio& studio) {
+    auto why = editing_lock(studio);
+    if (!why) return false;
+    notify(studio, std::move(*why));
+    return true;
 }
 
 void begin_trials(Studio& studio) {
@@ -158,7 +173,7 @@ void keep_shown_looks_valid(Studio& studio) {
 
 void select_part(Studio& studio, int part) {
     studio.selected_part = part;
-    studio.panels.library->target = LibraryPanelState::Target::part;
+    studio.paint_target = PaintTarget::part;
     studio.glowing_part = part;
     studio.glowing_until_s = studio.now_s + kGlow_s;
 }

@@ -2,25 +2,35 @@
 // results, and what the pointer is over. One instance, main thread.
 #pragma once
 
+#include <array>
+#include <chrono>
 #include <cstdint>
+#include <deque>
 #include <exception>
 #include <map>
 #include <memory>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "evaluation/ballots.h"
+#include "gl/handles.h"
 #include "gl/window.h"
 #include "live/bench_thread.h"
 #include "live/capture_thread.h"
 #include "live/frame_thread.h"
+#include "live/orbit.h"
 #include "live/preview_thread.h"
+#include "live/solve_key.h"
+#include "mesh/mesh.h"
 #include "projection/projector_screen.h"
 #include "session/session.h"
 #include "studio/kit/background.h"
 #include "studio/kit/file_dialog.h"
-#include "studio/panel_states.h"
+#include "studio/kit/question.h"
+#include "studio/panel.h"
+#include "studio/projector.h"
 
 namespace livery {
 
@@ -38,6 +48,87 @@ struct Notice {
     Level level = Level::info;
     std::string what, cause, fix;
     double shown_until_s = 0.0;  ///< 0: until dismissed
+};
+
+struct OpenedSession;
+
+/// How a picture lies on the stage when it is not drawn for it.
+struct PictureZoom {
+    double factor = 1.0;      ///< 1: fitted
+    double x = 0.5, y = 0.5;  ///< the picture's point in the middle of the stage, 0 to 1
+};
+
+struct StageState {
+    std::optional<Orbit> orbit;  ///< none: the product from its front quarter
+    double eye_zoom = 1.0;
+    PictureZoom projector, photograph;
+    int width = 0, height = 0;  ///< of the picture, pixels; 0: not drawn yet
+    bool dragged = false;
+    bool dragging_wipe = false, wipe_lit = false;
+    Texture2D photograph_texture;
+    std::shared_ptr<const BenchPhotograph> photograph_in_texture;
+};
+
+/// What the mock-up shows now, as far as it makes a difference: a new frame is asked for when it
+/// changes.
+struct FrameKey {
+    std::uint64_t revision = 0;
+    std::string tried;
+    int look = 0;
+    std::optional<int> wipe_to;
+    double wipe_at = 0.5;
+    std::optional<int> glowing_part;
+    std::shared_ptr<const ProjectorSetup> setup;
+    bool operator==(const FrameKey&) const = default;
+};
+
+struct PreviewKey {
+    std::uint64_t revision = 0;
+    std::string tried;
+    int look = 0;
+    StageView view = StageView::preview;
+    std::array<double, 7> camera{};  ///< of the orbit, and the eye's zoom
+    int width = 0, height = 0;
+    std::optional<int> highlighted_part;
+    std::optional<int> wipe_to;
+    double wipe_at = 0.5;
+    bool operator==(const PreviewKey&) const = default;
+};
+
+struct SetupKey {
+    std::string calibration, bench;
+    double design_white_percentile = 0.0;
+    GamutMapping gamut_mapping = GamutMapping::strict;
+    bool operator==(const SetupKey&) const = default;
+};
+
+/// A rectangle of the window, in its pixels.
+struct StageFrame {
+    float x = 0.0f, y = 0.0f, width = 0.0f, height = 0.0f;
+};
+
+/// What a click on a paint paints.
+enum class PaintTarget { part, rest, product };
+
+/// Whether the preview's newest picture is of the view that is open, and how long it has been
+/// behind what was changed.
+struct PreviewLag {
+    struct Asked {
+        std::uint64_t number = 0;
+        double at_s = 0.0;
+    };
+    std::deque<Asked> asked;           ///< not seen to be answered
+    std::optional<StageView> view;     ///< of the last that was asked for
+    std::uint64_t first_of_view = 0;   ///< earlier pictures are of another view
+    std::optional<double> held_since;  ///< seconds: a change has not even been asked for
+};
+
+/// While nobody changes anything the mock-up's picture gets better; what is remembered of the
+/// frames that were asked for.
+struct Refinement {
+    bool on = false;                 ///< the newest was asked for at the finer levels
+    double still_since_s = 0.0;      ///< since when nothing else was asked for
+    std::optional<SolveKeys> light;  ///< of the newest, as the document has its levels
 };
 
 struct Studio {
@@ -71,6 +162,8 @@ struct Studio {
     bool wiping = false;
     double wipe_at = 0.5;
     std::optional<int> selected_part;
+    PaintTarget paint_target = PaintTarget::part;
+    int arrows_taken_in_frame = -1;  ///< of Dear ImGui: the arrow keys were among swatches then
     StageView view = StageView::preview;
 
     /// What the pointer or the arrow keys went to: shown on the mock-up, not in the document. It is
@@ -100,6 +193,66 @@ struct Studio {
     UserSettings settings;
     std::unique_ptr<FileDialog> file_dialog;  ///< keeps its folders in `settings`
     PanelStates panels;
+
+    std::shared_ptr<Trace> trace = std::make_shared<Trace>();
+    std::shared_ptr<Results> results;  ///< what the threads left for the main one
+    Bounds product_bounds;
+    std::optional<std::pair<double, double>> mock_up_columns;  ///< of the projector's picture
+
+    // What was asked for.
+    std::optional<FrameKey> asked_frame;
+    std::optional<PreviewKey> asked_preview;
+    PreviewLag preview_lag;
+    std::optional<SetupKey> asked_setup;
+    std::uint64_t frame_number = 0, preview_number = 0;
+    Refinement refinement;
+    std::shared_ptr<const FramePictures> photographed;  ///< the newest that the bench was to show
+    glm::dvec3 photographed_from_mm{0.0};
+
+    bool draws_in_software = false;
+    std::string drawn_with;  ///< the devices, in a sentence or two
+    double frame_asked_s = 0.0, preview_waits_until_s = 0.0;
+    double opened_s = 0.0;  ///< steady clock
+    std::map<std::tuple<std::string, double, double>, std::shared_ptr<const Environment>>
+        environments;
+    std::chrono::steady_clock::time_point input_at{};  ///< of the newest input in this frame
+    std::uint64_t problem_number = 0;                  ///< of the frame whose problem was told
+    std::string not_drawn;  ///< why there is no frame of what should be shown; else empty
+    std::map<int, std::vector<std::string>> told_problems;  ///< of what looks need, by look
+
+    // The projector.
+    std::string projector_monitor;     ///< chosen; empty: none
+    bool projector_was_there = false;  ///< that one, since the start
+    std::vector<SignalWarning> signal_warnings;
+    std::unique_ptr<MonitorNumbers> monitor_numbers;
+    double monitor_numbers_until_s = 0.0;
+    bool only_screen_is_projector = false;  ///< the chosen one, which therefore stays dark
+    bool black = false, frozen = false;
+    bool signal_test_open = false;
+    ShownInstead instead;
+    std::string other_product;  ///< why the correction is another product's; empty: it is not
+
+    // The window.
+    Window* window = nullptr;       ///< none in tests
+    bool window_must_move = false;  ///< it may lie on the projector
+    StageState stage;
+    float left_width_em = 15.5f, right_width_em = 26.5f;
+    std::string layout_seen;         ///< as text; remembered when it rests
+    double layout_rests_at_s = 0.0;  ///< 0: it is remembered
+    double save_again_at_s = 0.0;    ///< 0: everything is saved, or there is no file
+    double user_scale = 1.0;
+    std::string last_action;  ///< id of the last one that ran
+    int actions_run = 0;
+    std::optional<double> fixed_scale;  ///< --ui-scale
+    std::string tab_to_open;            ///< a panel's name; empty: the one that is open
+    std::string open_tab;
+    int tab_step = 0;                             ///< Tab was pressed: 1, with Shift: -1
+    std::optional<Question> question;             ///< stands before all but the file dialog
+    std::shared_ptr<OpenedSession> next_session;  ///< shared with the thread that opened it
+    bool quit = false;
+    bool clicked_a_view = false;
+    float stage_x = 0.0f, stage_y = 0.0f;  ///< upper left corner of the stage, pixels
+    double frame_ms = 0.0;                 ///< the window's own last frame
 };
 
 /// Executes, shows the look that it is about, and turns what it throws into a notice.
@@ -128,6 +281,11 @@ void show_look(Studio& studio, int look);
 /// After anything that may have deleted looks: shows a neighbour of one that is gone.
 void keep_shown_looks_valid(Studio& studio);
 
+/// Nothing may be edited now, and why (Panel::locks_editing); refuse_editing() tells so.
+std::optional<Notice> editing_lock(const Studio& studio);
+bool is_editing_locked(const Studio& studio);
+bool refuse_editing(Studio& studio);
+
 /// Around everything that may try something out, once a frame of the window.
 void begin_trials(Studio& studio);
 void end_trials(Studio& studio);
@@ -143,24 +301,5 @@ Document shown_document(const Studio& studio);
 void notify(Studio& studio, Notice notice);
 /// `what` did not come about, and why; nothing for Cancelled.
 void notify_failure(Studio& studio, const std::string& what, const std::exception_ptr& why);
-
-/// Remembers where the item just drawn is on the screen, under a name that does not depend on the
-/// layout ("paint:solid red", "look:2", "undo"): for `--ui-map FILE`, by which tests and other
-/// programs drive the window.
-void name_last_item(const std::string& name);
-
-// The panels, one file each: called once a frame of the window, each inside its own child region.
-void draw_looks_panel(Studio& studio);
-void draw_parts_panel(Studio& studio);
-void draw_library_panel(Studio& studio);
-void draw_paint_panel(Studio& studio);
-void draw_artwork_panel(Studio& studio);
-void draw_lighting_panel(Studio& studio);
-void draw_plan_panel(Studio& studio);
-void draw_calibration_panel(Studio& studio);
-/// Instead of the tabs; `open` is the caller's flag.
-void draw_ballot_panel(Studio& studio, bool& open);
-/// How many letters, from A, are designs' now; 0 when nobody votes in that panel.
-std::size_t ballot_letters(const Studio& studio);
 
 }  // namespace livery

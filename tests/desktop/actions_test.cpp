@@ -1,6 +1,6 @@
 // Every entry of the table of actions in the real window, by menu and by key, in a session and
 // beside each dialog.
-#include "studio/window/actions.h"
+#include "studio/actions.h"
 
 #include <algorithm>
 #include <map>

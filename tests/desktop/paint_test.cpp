@@ -10,7 +10,7 @@
 #include "desktop/prepared.h"
 #include "desktop/two_monitors.h"
 #include "session/commands.h"
-#include "studio/paint/paint_parameters.h"
+#include "studio/kit/words.h"
 
 namespace livery {
 namespace {

@@ -237,6 +237,39 @@ TEST(Layering, NoIncludeIsForbidden) {
     EXPECT_TRUE(found.empty()) << joined(found);
 }
 
+/// As docs/architecture.md lists them, in the sentence after "A folder of `studio/` includes".
+std::vector<std::string> order_of_studio(const std::filesystem::path& source) {
+    const std::string text = text_of(source / "docs/architecture.md");
+    const auto from = text.find("which a test sees to:");
+    static const std::regex name(R"(`(\w+)`)");
+    const std::string list = text.substr(from, text.find("\n\n", from) - from);
+    std::vector<std::string> order;
+    for (std::sregex_iterator it(list.begin(), list.end(), name), end; it != end; ++it) {
+        order.push_back((*it)[1]);
+    }
+    return order;
+}
+
+TEST(Layering, AFolderOfTheStudioIncludesThoseBeforeItAlone) {
+    const auto order = order_of_studio(kSource);
+    const auto place = [&](const std::string& file) {
+        const auto folder = std::filesystem::path(file).parent_path().filename().string();
+        const auto found = std::find(order.begin(), order.end(), folder);
+        EXPECT_NE(found, order.end()) << file << " is in no folder of the list";
+        return found - order.begin();
+    };
+    static const std::regex include(R"x(#include "(studio/[^"]+)")x");
+    for (const auto& entry :
+         std::filesystem::recursive_directory_iterator(kSource / "src/studio")) {
+        if (!is_source(entry.path())) continue;
+        const std::string text = text_of(entry.path());
+        for (std::sregex_iterator it(text.begin(), text.end(), include), end; it != end; ++it) {
+            EXPECT_LE(place((*it)[1]), place(entry.path().string()))
+                << entry.path() << " includes " << (*it)[1];
+        }
+    }
+}
+
 TEST(Layering, PlantedIncludesAreFound) {
     const auto rules = read_rules(kSource);
     const TemporaryFolder folder;

@@ -33,7 +33,7 @@ AccuracyLedger two_levels() {
 TEST_F(Panels, AccuracyAsShippedUntilItIsMeasuredHere) {
     use_scale(1.0f);
     Studio studio = make_studio();
-    const AccuracyPage& page = studio.panels.lighting->accuracy;
+    const AccuracyPage& page = studio.panels.of<AccuracyPage>();
     frames(studio, draw_accuracy_page, 2);
     EXPECT_FALSE(page.shown) << "nothing is read before somebody asks";
     show_accuracy_page(studio, true);
@@ -58,7 +58,7 @@ TEST_F(Panels, ARowOfTheLedgerAndItsMarkArePointedAtTogether) {
     Studio studio = make_studio();
     write_accuracy(accuracy_file(), two_levels());
     show_accuracy_page(studio, true);
-    const AccuracyPage& page = studio.panels.lighting->accuracy;
+    const AccuracyPage& page = studio.panels.of<AccuracyPage>();
     ItemPlaces places = frames(studio, draw_accuracy_page, 3);
     const auto row = places["accuracy:quality:normal"];
     const auto point_at = [](int x, int y) {
@@ -86,7 +86,7 @@ TEST_F(Panels, ADamagedLedgerIsNamedAndNothingIsLost) {
     write_text_file(accuracy_file(), "{\"format_version\": 1, \"renderer\": 7}");
     show_accuracy_page(studio, true);
     const ItemPlaces places = frames(studio, draw_accuracy_page, 3);
-    const AccuracyPage& page = studio.panels.lighting->accuracy;
+    const AccuracyPage& page = studio.panels.of<AccuracyPage>();
     EXPECT_FALSE(page.shown);
     EXPECT_NE(page.problem.find("renderer"), std::string::npos) << page.problem;
     EXPECT_TRUE(places.contains("accuracy:measure")) << "it can be measured anew";

@@ -1,11 +1,11 @@
-#include "studio/window/actions.h"
+#include "studio/actions.h"
 
 #include <set>
 
 #include <GLFW/glfw3.h>
 #include <gtest/gtest.h>
 
-#include "studio/window/shell.h"
+#include "studio/studio.h"
 
 namespace livery {
 namespace {
@@ -25,15 +25,15 @@ Document three_looks() {
 }
 
 struct Window : ::testing::Test {
-    Window() { keep_shown_looks_valid(shell.studio); }
+    Window() { keep_shown_looks_valid(studio); }
 
     bool press(int key, bool ctrl = false, bool shift = false, KeyboardOwner owner = {}) {
         const Action* action = action_for({key, ctrl, shift}, owner);
-        return action && run_action(*action, shell);
+        return action && run_action(*action, studio);
     }
-    const Document& document() const { return shell.studio.session.document(); }
+    const Document& document() const { return studio.session.document(); }
 
-    Shell shell{Session::unsaved(three_looks(), "a test")};
+    Studio studio{Session::unsaved(three_looks(), "a test")};
 };
 
 TEST(Actions, NamesAndKeysAreEachUsedOnce) {
@@ -101,27 +101,27 @@ TEST(Actions, ArrowsStepLooksUnlessTheyMoveBetweenItems) {
 }
 
 TEST_F(Window, NumbersAndStepsShowLooks) {
-    EXPECT_EQ(shell.studio.shown_look, 1);
+    EXPECT_EQ(studio.shown_look, 1);
     EXPECT_TRUE(press(GLFW_KEY_3));
-    EXPECT_EQ(shell.studio.shown_look, 3);
-    EXPECT_EQ(shell.studio.compared_look, 1) << "B is the look shown before";
+    EXPECT_EQ(studio.shown_look, 3);
+    EXPECT_EQ(studio.compared_look, 1) << "B is the look shown before";
     EXPECT_TRUE(press(GLFW_KEY_PAGE_DOWN));
-    EXPECT_EQ(shell.studio.shown_look, 1) << "after the last comes the first";
+    EXPECT_EQ(studio.shown_look, 1) << "after the last comes the first";
     EXPECT_TRUE(press(GLFW_KEY_PAGE_UP));
-    EXPECT_EQ(shell.studio.shown_look, 3);
+    EXPECT_EQ(studio.shown_look, 3);
     EXPECT_FALSE(press(GLFW_KEY_4)) << "there are three";
     EXPECT_EQ(document().looks.size(), 3u);
-    EXPECT_FALSE(shell.studio.session.can_undo()) << "showing is no change";
+    EXPECT_FALSE(studio.session.can_undo()) << "showing is no change";
 }
 
 TEST_F(Window, DeletingShowsTheNeighbourAndUndoShowsItAgain) {
     press(GLFW_KEY_3);
     EXPECT_TRUE(press(GLFW_KEY_DELETE));
     EXPECT_EQ(document().looks.size(), 2u);
-    EXPECT_EQ(shell.studio.shown_look, 2);
+    EXPECT_EQ(studio.shown_look, 2);
     EXPECT_TRUE(press(GLFW_KEY_Z, true));
     EXPECT_EQ(document().looks.size(), 3u);
-    EXPECT_EQ(shell.studio.shown_look, 3);
+    EXPECT_EQ(studio.shown_look, 3);
     EXPECT_TRUE(press(GLFW_KEY_Y, true));
     EXPECT_EQ(document().looks.size(), 2u);
     EXPECT_FALSE(press(GLFW_KEY_Z, true, true)) << "nothing is left to redo";
@@ -132,77 +132,77 @@ TEST_F(Window, TheLastLookStays) {
     press(GLFW_KEY_DELETE);
     EXPECT_FALSE(press(GLFW_KEY_DELETE));
     EXPECT_EQ(document().looks.size(), 1u);
-    EXPECT_FALSE(shell.studio.compared_look);
+    EXPECT_FALSE(studio.compared_look);
     EXPECT_FALSE(press(GLFW_KEY_W)) << "there is nothing to wipe to";
 }
 
 TEST_F(Window, DuplicatesAreShown) {
     EXPECT_TRUE(press(GLFW_KEY_D, true));
     EXPECT_EQ(document().looks.size(), 4u);
-    EXPECT_EQ(shell.studio.shown_look, 4);
+    EXPECT_EQ(studio.shown_look, 4);
     EXPECT_TRUE(press(GLFW_KEY_N));
     EXPECT_EQ(document().looks.size(), 5u);
-    EXPECT_EQ(shell.studio.shown_look, 5);
+    EXPECT_EQ(studio.shown_look, 5);
 }
 
 TEST_F(Window, HoldingShowsBUntilItIsLetGo) {
     press(GLFW_KEY_2);
     EXPECT_TRUE(press(GLFW_KEY_SPACE));
-    EXPECT_TRUE(shell.studio.showing_b);
-    action_named("hold-b").released(shell);
-    EXPECT_FALSE(shell.studio.showing_b);
+    EXPECT_TRUE(studio.showing_b);
+    action_named("hold-b").released(studio);
+    EXPECT_FALSE(studio.showing_b);
 }
 
 TEST_F(Window, BlackAndFreezeSwitch) {
     EXPECT_TRUE(press(GLFW_KEY_B));
-    EXPECT_TRUE(shell.black);
+    EXPECT_TRUE(studio.black);
     EXPECT_TRUE(press(GLFW_KEY_B, true, false, {.text_field = true}));
-    EXPECT_FALSE(shell.black);
+    EXPECT_FALSE(studio.black);
     EXPECT_TRUE(press(GLFW_KEY_F));
-    EXPECT_TRUE(shell.frozen);
+    EXPECT_TRUE(studio.frozen);
 }
 
 TEST_F(Window, EscGivesUpTheTopmostThing) {
-    shell.help_open = true;
-    shell.studio.wiping = true;
-    shell.studio.selected_part = 1;
-    notify(shell.studio, {Notice::Level::warning, "What", "why", "fix"});
+    show_panel(studio, "keys");
+    studio.wiping = true;
+    studio.selected_part = 1;
+    notify(studio, {Notice::Level::warning, "What", "why", "fix"});
     press(GLFW_KEY_ESCAPE);
-    EXPECT_FALSE(shell.help_open);
+    EXPECT_FALSE(is_open(studio, "keys"));
     press(GLFW_KEY_ESCAPE);
-    EXPECT_TRUE(shell.studio.notices.empty());
+    EXPECT_TRUE(studio.notices.empty());
     press(GLFW_KEY_ESCAPE);
-    EXPECT_FALSE(shell.studio.wiping);
+    EXPECT_FALSE(studio.wiping);
     press(GLFW_KEY_ESCAPE);
-    EXPECT_FALSE(shell.studio.selected_part);
+    EXPECT_FALSE(studio.selected_part);
 }
 
 TEST_F(Window, WhatIsTriedShowsAndIsNotCommitted) {
-    shell.studio.tried = SetPaint{1, "*", "solid blue"};
-    EXPECT_EQ(find_look(shown_document(shell.studio), 1)->look.parts.at("*"), "solid blue");
+    studio.tried = SetPaint{1, "*", "solid blue"};
+    EXPECT_EQ(find_look(shown_document(studio), 1)->look.parts.at("*"), "solid blue");
     EXPECT_EQ(find_look(document(), 1)->look.parts.at("*"), "solid red");
     press(GLFW_KEY_ESCAPE);
-    EXPECT_EQ(find_look(shown_document(shell.studio), 1)->look.parts.at("*"), "solid red");
+    EXPECT_EQ(find_look(shown_document(studio), 1)->look.parts.at("*"), "solid red");
 }
 
 TEST_F(Window, ATrialOfALookThatIsGoneShowsTheDocument) {
-    shell.studio.tried = SetPaint{77, "*", "solid blue"};
-    EXPECT_EQ(shown_document(shell.studio).looks.size(), 3u);
+    studio.tried = SetPaint{77, "*", "solid blue"};
+    EXPECT_EQ(shown_document(studio).looks.size(), 3u);
 }
 
 TEST_F(Window, ACommandThatFailsIsTold) {
-    commit(shell.studio, RenameLook{1, ""});
-    ASSERT_EQ(shell.studio.notices.size(), 1u);
-    EXPECT_EQ(shell.studio.notices[0].level, Notice::Level::error);
-    EXPECT_FALSE(shell.studio.notices[0].cause.empty());
-    EXPECT_FALSE(shell.studio.session.can_undo());
+    commit(studio, RenameLook{1, ""});
+    ASSERT_EQ(studio.notices.size(), 1u);
+    EXPECT_EQ(studio.notices[0].level, Notice::Level::error);
+    EXPECT_FALSE(studio.notices[0].cause.empty());
+    EXPECT_FALSE(studio.session.can_undo());
 }
 
 TEST_F(Window, TheSameNoticeIsToldOnce) {
-    notify(shell.studio, {Notice::Level::error, "Full", "disk", ""});
-    notify(shell.studio, {Notice::Level::error, "Full", "disk still", ""});
-    ASSERT_EQ(shell.studio.notices.size(), 1u);
-    EXPECT_EQ(shell.studio.notices[0].cause, "disk still");
+    notify(studio, {Notice::Level::error, "Full", "disk", ""});
+    notify(studio, {Notice::Level::error, "Full", "disk still", ""});
+    ASSERT_EQ(studio.notices.size(), 1u);
+    EXPECT_EQ(studio.notices[0].cause, "disk still");
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // The ballot panel drawn without a window: letters fill a ballot in, and it follows the phones.
-#include "studio/ballot_panel.h"
+#include "studio/presenting/ballot_panel.h"
 
 #include <gtest/gtest.h>
 #include <imgui.h>
@@ -25,7 +25,7 @@ TEST_F(Panels, ABallotIsFilledByTheLettersThatItShows) {
         EXPECT_LE(places[name].x + places[name].width, kColumn) << name;
     }
     EXPECT_EQ(ballot_letters(studio), 2u);
-    const BallotPanelState& state = *studio.panels.ballot;
+    const BallotPanelState& state = studio.panels.of<BallotPanelState>();
     const auto type = [&](char letter) {
         ImGui::GetIO().AddInputCharacter(static_cast<unsigned>(letter));
         frames(studio, draw_ballot, 2);
@@ -80,7 +80,7 @@ TEST_F(Panels, TheBallotFollowsWhatPhonesDo) {
     BallotStore phones(home_ / "ballots.sqlite");
     const int session = phones.open_session(), seat = phones.join(session, "a phone's", 9);
     click(studio, draw_ballot, "ballot:start");
-    const BallotPanelState& state = *studio.panels.ballot;
+    const BallotPanelState& state = studio.panels.of<BallotPanelState>();
     ASSERT_EQ(state.rounds.size(), 1u);
     EXPECT_EQ(state.rounds[0].session, session);
     EXPECT_EQ(state.rounds[0].ballots, 0);

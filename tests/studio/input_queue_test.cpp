@@ -1,4 +1,4 @@
-#include "studio/window/input_queue.h"
+#include "studio/kit/input_queue.h"
 
 #include <string>
 #include <vector>

@@ -21,10 +21,9 @@
 #include "studio/kit/theme.h"
 #include "studio/kit/ui_map.h"
 #include "studio/kit/user_settings.h"
-#include "studio/projector_control.h"
+#include "studio/projector.h"
 #include "studio/studio.h"
-#include "studio/window/shell.h"
-#include "studio/window/shell_state.h"
+#include "studio/window/window_state.h"
 #include "support/temporary_folder.h"
 
 namespace livery {
@@ -142,17 +141,17 @@ class Keyboard : public ::testing::Test {
 
 TEST_F(Keyboard, ANewSessionHasTheProjectorOfTheOneBefore) {
     const auto new_session = [] {
-        auto shell = std::make_unique<Shell>(Session::unsaved(Document{}, "a test"));
-        shell->studio.settings = read_user_settings();
-        restore_workspace(*shell);
-        return shell;
+        auto studio = std::make_unique<Studio>(Session::unsaved(Document{}, "a test"));
+        studio->settings = read_user_settings();
+        restore_workspace(*studio);
+        return studio;
     };
     EXPECT_EQ(new_session()->projector_monitor, "");
     const auto first = new_session();
     use_projector_monitor(*first, "HDMI-1");
     EXPECT_EQ(new_session()->projector_monitor, "HDMI-1");
     // A session that has chosen keeps its choice.
-    first->studio.session.set_workspace("projector-monitor", "");
+    first->session.set_workspace("projector-monitor", "");
     restore_workspace(*first);
     EXPECT_EQ(first->projector_monitor, "");
 }
@@ -349,13 +348,13 @@ TEST_F(Keyboard, TabGoesThroughEveryPanelAndBack) {
     Studio studio = sphere_studio();
     using DrawPanel = void (*)(Studio&);
     const std::vector<std::pair<DrawPanel, std::vector<std::string>>> panels{
-        {draw_library_panel, {"paint-search", "family:all", "paint:solid red"}},
-        {draw_paint_panel, {"paint-colour", "param:model", "param:diffuse:hex", "save-paint"}},
-        {draw_artwork_panel, {"artwork:add"}},
-        {draw_lighting_panel, {"light:0:intensity", "add-light", "exposure", "quality:high"}},
-        {draw_calibration_panel, {"bench", "design-white", "keep-hue", "calibration:none"}},
-        {draw_looks_panel, {"look:1", "duplicate-look-button"}},
-        {draw_parts_panel, {"part:sphere"}}};
+        {draw_of("Paints"), {"paint-search", "family:all", "paint:solid red"}},
+        {draw_of("Paint"), {"paint-colour", "param:model", "param:diffuse:hex", "save-paint"}},
+        {draw_of("Artwork"), {"artwork:add"}},
+        {draw_of("Light"), {"light:0:intensity", "add-light", "exposure", "quality:high"}},
+        {draw_of("Calibrate"), {"bench", "design-white", "keep-hue", "calibration:none"}},
+        {draw_of("looks"), {"look:1", "duplicate-look-button"}},
+        {draw_of("parts"), {"part:sphere"}}};
     for (const auto& [draw, expected] : panels) {
         draw_ = [&studio, panel = draw] {
             begin_trials(studio);

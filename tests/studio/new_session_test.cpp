@@ -21,7 +21,7 @@
 #include "studio/box_mesh.h"
 #include "studio/product/mesh_picture.h"
 #include "studio/product/open_session.h"
-#include "studio/window/shell.h"
+#include "studio/studio.h"
 #include "support/file_error.h"
 #include "support/temporary_folder.h"
 
@@ -154,9 +154,9 @@ TEST(MeshPicture, ShowsTheProductAsItWouldStand) {
 /// The window's state without a window, on a session in a file.
 class OneWindow : public ::testing::Test {
   protected:
-    OneWindow() : shell_(first_session()) {
-        shell_.studio.background = std::make_unique<Background>([] {});
-        shell_.studio.file_dialog = std::make_unique<FileDialog>(shell_.studio.settings);
+    OneWindow() : studio_(first_session()) {
+        studio_.background = std::make_unique<Background>([] {});
+        studio_.file_dialog = std::make_unique<FileDialog>(studio_.settings);
     }
     ~OneWindow() override { unsetenv("LIVERY_HOME"); }
 
@@ -169,10 +169,10 @@ class OneWindow : public ::testing::Test {
         return folder_.write(name, scan.binary_ply(std::endian::little));
     }
     void finish_work() {
-        while (shell_.studio.background->is_busy()) {
+        while (studio_.background->is_busy()) {
             std::this_thread::sleep_for(std::chrono::milliseconds(5));
         }
-        shell_.studio.background->take_results();
+        studio_.background->take_results();
     }
     NewSession asked_of(const std::filesystem::path& mesh) {
         NewSession asked;
@@ -184,13 +184,13 @@ class OneWindow : public ::testing::Test {
         return asked;
     }
     std::string only_notice() {
-        const auto& notices = shell_.studio.notices;
+        const auto& notices = studio_.notices;
         EXPECT_EQ(notices.size(), 1u);
         return notices.empty() ? "" : notices[0].what + " " + notices[0].cause;
     }
 
     TemporaryFolder folder_;
-    Shell shell_;
+    Studio studio_;
 };
 
 TEST_F(OneWindow, ASessionOfAMeshHasItsProductBesideIt) {
@@ -220,11 +220,11 @@ TEST_F(OneWindow, ASessionThatCannotBeMadeLeavesNothingBehind) {
 }
 
 TEST_F(OneWindow, AMeshThatIsDroppedIsAskedAbout) {
-    take_dropped_files(shell_, {write_box("my car.ply")});
-    ASSERT_TRUE(shell_.new_session);
-    EXPECT_EQ(shell_.new_session->stage, NewSession::Stage::reading);
+    take_dropped_files(studio_, {write_box("my car.ply")});
+    ASSERT_TRUE(page(studio_));
+    EXPECT_EQ(page(studio_)->stage, NewSession::Stage::reading);
     finish_work();
-    const NewSession& asked = *shell_.new_session;
+    const NewSession& asked = *page(studio_);
     ASSERT_EQ(asked.stage, NewSession::Stage::asking) << asked.problem;
     EXPECT_EQ(asked.facts.triangles, 12u);
     EXPECT_EQ(asked.answers.unit, LengthUnit::m);
@@ -236,10 +236,10 @@ TEST_F(OneWindow, AMeshThatIsDroppedIsAskedAbout) {
     };
     EXPECT_GT(share_at(25.0).value(), 0.98);
     EXPECT_LT(share_at(10.0).value(), 0.7);
-    start_creating(shell_);
+    start_creating(studio_);
     finish_work();
-    ASSERT_TRUE(shell_.next_session);
-    EXPECT_EQ(shell_.next_session->session.file(), asked.session);
+    ASSERT_TRUE(studio_.next_session);
+    EXPECT_EQ(studio_.next_session->session.file(), asked.session);
 }
 
 TEST_F(OneWindow, AProductFileHasAnsweredAll) {
@@ -247,17 +247,17 @@ TEST_F(OneWindow, AProductFileHasAnsweredAll) {
     const auto file = folder_.write(
         "car.product.json",
         R"({"format_version": 1, "mesh": "car.ply", "unit": "cm", "product_scale": 4})");
-    take_dropped_files(shell_, {file});
+    take_dropped_files(studio_, {file});
     finish_work();
-    ASSERT_TRUE(shell_.new_session && shell_.new_session->is_product_file);
-    EXPECT_EQ(shell_.new_session->session.filename(), "car.livery");
-    EXPECT_EQ(size_text(mock_up_size_mm(shell_.new_session->facts, shell_.new_session->answers)),
+    ASSERT_TRUE(page(studio_) && page(studio_)->is_product_file);
+    EXPECT_EQ(page(studio_)->session.filename(), "car.livery");
+    EXPECT_EQ(size_text(mock_up_size_mm(page(studio_)->facts, page(studio_)->answers)),
               "46 x 19 x 15 mm");
-    start_creating(shell_);
+    start_creating(studio_);
     finish_work();
-    ASSERT_TRUE(shell_.next_session);
-    EXPECT_EQ(shell_.next_session->session.document().product, file.string());
-    EXPECT_EQ(shell_.next_session->product->product_scale, 4.0);
+    ASSERT_TRUE(studio_.next_session);
+    EXPECT_EQ(studio_.next_session->session.document().product, file.string());
+    EXPECT_EQ(studio_.next_session->product->product_scale, 4.0);
 }
 
 TEST_F(OneWindow, AUnitThatIsGivenWithAFileIsItsWhateverItSays) {
@@ -265,65 +265,65 @@ TEST_F(OneWindow, AUnitThatIsGivenWithAFileIsItsWhateverItSays) {
     const auto file = folder_.write(
         "car.product.json",
         R"({"format_version": 1, "mesh": "car.ply", "unit": "cm", "product_scale": 4})");
-    begin_new_session(shell_, file, {}, LengthUnit::in);
+    begin_new_session(studio_, file, {}, LengthUnit::in);
     finish_work();
-    start_creating(shell_);
+    start_creating(studio_);
     finish_work();
-    ASSERT_TRUE(shell_.next_session) << shell_.new_session->problem;
-    EXPECT_EQ(shell_.next_session->session.document().product_unit, LengthUnit::in);
-    const Bounds bounds = bounds_of(shell_.next_session->product->mesh);
+    ASSERT_TRUE(studio_.next_session) << page(studio_)->problem;
+    EXPECT_EQ(studio_.next_session->session.document().product_unit, LengthUnit::in);
+    const Bounds bounds = bounds_of(studio_.next_session->product->mesh);
     EXPECT_NEAR(bounds.high.x - bounds.low.x, 4.6 * 25.4, 1e-3);
 
-    begin_new_session(shell_, folder_ / "car.ply", {}, LengthUnit::mm);
+    begin_new_session(studio_, folder_ / "car.ply", {}, LengthUnit::mm);
     finish_work();
-    EXPECT_EQ(shell_.new_session->answers.unit, LengthUnit::mm);
+    EXPECT_EQ(page(studio_)->answers.unit, LengthUnit::mm);
 }
 
 TEST_F(OneWindow, WhatCannotBeReadSaysSoOnThePage) {
-    begin_new_session(shell_, folder_.write("broken.ply", "ply\nformat nonsense\n"));
+    begin_new_session(studio_, folder_.write("broken.ply", "ply\nformat nonsense\n"));
     finish_work();
-    ASSERT_TRUE(shell_.new_session);
-    EXPECT_EQ(shell_.new_session->stage, NewSession::Stage::unreadable);
-    EXPECT_NE(shell_.new_session->problem.find("broken.ply"), std::string::npos);
-    EXPECT_TRUE(shell_.studio.notices.empty());
+    ASSERT_TRUE(page(studio_));
+    EXPECT_EQ(page(studio_)->stage, NewSession::Stage::unreadable);
+    EXPECT_NE(page(studio_)->problem.find("broken.ply"), std::string::npos);
+    EXPECT_TRUE(studio_.notices.empty());
 }
 
 TEST_F(OneWindow, ThePageKeepsWhatWasAnsweredWhenTheSessionCannotBeMade) {
-    begin_new_session(shell_, write_box("car.ply"));
+    begin_new_session(studio_, write_box("car.ply"));
     finish_work();
-    shell_.new_session->answers.product_scale = 10.0;
-    shell_.new_session->session = folder_ / "first.livery";
-    start_creating(shell_);
+    page(studio_)->answers.product_scale = 10.0;
+    page(studio_)->session = folder_ / "first.livery";
+    start_creating(studio_);
     finish_work();
-    ASSERT_TRUE(shell_.new_session && !shell_.next_session);
-    EXPECT_EQ(shell_.new_session->stage, NewSession::Stage::asking);
-    EXPECT_EQ(shell_.new_session->answers.product_scale, 10.0);
-    EXPECT_NE(shell_.new_session->problem.find("is there already"), std::string::npos)
-        << shell_.new_session->problem;
-    shell_.new_session->answers.part_names = {""};
-    start_creating(shell_);
-    EXPECT_EQ(shell_.new_session->problem, "Each part needs a name.");
-    shell_.new_session->answers.part_names = {"body"};
-    shell_.new_session->session = " ";
-    start_creating(shell_);
-    EXPECT_EQ(shell_.new_session->problem, "Say where the session is saved.");
+    ASSERT_TRUE(page(studio_) && !studio_.next_session);
+    EXPECT_EQ(page(studio_)->stage, NewSession::Stage::asking);
+    EXPECT_EQ(page(studio_)->answers.product_scale, 10.0);
+    EXPECT_NE(page(studio_)->problem.find("is there already"), std::string::npos)
+        << page(studio_)->problem;
+    page(studio_)->answers.part_names = {""};
+    start_creating(studio_);
+    EXPECT_EQ(page(studio_)->problem, "Each part needs a name.");
+    page(studio_)->answers.part_names = {"body"};
+    page(studio_)->session = " ";
+    start_creating(studio_);
+    EXPECT_EQ(page(studio_)->problem, "Say where the session is saved.");
     // A bare name is one in the folder of sessions.
-    shell_.new_session->session = "my v1.2";
-    start_creating(shell_);
+    page(studio_)->session = "my v1.2";
+    start_creating(studio_);
     finish_work();
-    ASSERT_TRUE(shell_.next_session) << shell_.new_session->problem;
-    EXPECT_EQ(shell_.next_session->session.file(), folder_ / "home/sessions/my v1.2.livery");
+    ASSERT_TRUE(studio_.next_session) << page(studio_)->problem;
+    EXPECT_EQ(studio_.next_session->session.file(), folder_ / "home/sessions/my v1.2.livery");
 }
 
 TEST_F(OneWindow, APageThatWasClosedHearsNothingMore) {
-    begin_new_session(shell_, write_box("car.ply"));
-    shell_.new_session.reset();
+    begin_new_session(studio_, write_box("car.ply"));
+    page(studio_).reset();
     finish_work();
-    EXPECT_FALSE(shell_.new_session);
-    begin_new_session(shell_, write_box("car.ply"));
-    begin_new_session(shell_, write_box("van.ply"));
+    EXPECT_FALSE(page(studio_));
+    begin_new_session(studio_, write_box("car.ply"));
+    begin_new_session(studio_, write_box("van.ply"));
     finish_work();
-    EXPECT_EQ(shell_.new_session->facts.file.filename(), "van.ply");
+    EXPECT_EQ(page(studio_)->facts.file.filename(), "van.ply");
 }
 
 TEST_F(OneWindow, OtherThingsThatAreDroppedAreSaidNotToBeFor) {
@@ -334,29 +334,29 @@ TEST_F(OneWindow, OtherThingsThatAreDroppedAreSaidNotToBeFor) {
           {look},
           {folder_.path()},
           {write_box("a.ply"), write_box("b.ply")}}) {
-        shell_.studio.notices.clear();
-        take_dropped_files(shell_, files);
+        studio_.notices.clear();
+        take_dropped_files(studio_, files);
         finish_work();
         EXPECT_NE(only_notice().find(".glb"), std::string::npos) << files[0];
-        EXPECT_FALSE(shell_.new_session || shell_.next_session) << files[0];
+        EXPECT_FALSE(page(studio_) || studio_.next_session) << files[0];
     }
 }
 
 TEST_F(OneWindow, ASessionThatIsDroppedIsNext) {
     Session::open(folder_ / "second.livery", "sphere");
-    take_dropped_files(shell_, {folder_ / "second.livery"});
+    take_dropped_files(studio_, {folder_ / "second.livery"});
     finish_work();
-    ASSERT_TRUE(shell_.next_session);
-    EXPECT_EQ(shell_.next_session->session.file(), folder_ / "second.livery");
-    EXPECT_EQ(shell_.next_session->product->name, "Sphere");
+    ASSERT_TRUE(studio_.next_session);
+    EXPECT_EQ(studio_.next_session->session.file(), folder_ / "second.livery");
+    EXPECT_EQ(studio_.next_session->product->name, "Sphere");
 }
 
 TEST_F(OneWindow, WhatCannotBeOpenedLeavesTheSessionThatIs) {
     const auto refused_with = [&](const std::filesystem::path& file, const std::string& words) {
-        shell_.studio.notices.clear();
-        open_other_session(shell_, file);
+        studio_.notices.clear();
+        open_other_session(studio_, file);
         finish_work();
-        EXPECT_FALSE(shell_.next_session) << file;
+        EXPECT_FALSE(studio_.next_session) << file;
         const std::string notice = only_notice();
         EXPECT_NE(notice.find(words), std::string::npos) << notice;
     };
@@ -372,7 +372,7 @@ TEST_F(OneWindow, WhatCannotBeOpenedLeavesTheSessionThatIs) {
     Session::open(folder_ / "of mesh.livery", mesh.string());
     std::filesystem::remove(mesh);
     refused_with(folder_ / "of mesh.livery", "car.ply");
-    shell_.studio.session = Session::unsaved(shell_.studio.session.document(), "a test");
+    studio_.session = Session::unsaved(studio_.session.document(), "a test");
     refused_with(folder_ / "second.livery", "not saved yet");
 }
 

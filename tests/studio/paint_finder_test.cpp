@@ -3,7 +3,7 @@
 #include "appearance/material_library.h"
 #include "appearance/paint_figures.h"
 #include "core/colour.h"
-#include "studio/paint/users_library.h"
+#include "studio/users_library.h"
 
 namespace livery {
 namespace {

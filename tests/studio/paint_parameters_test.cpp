@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "core/colour.h"
+#include "studio/kit/words.h"
 
 namespace livery {
 namespace {

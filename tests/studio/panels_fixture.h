@@ -12,12 +12,15 @@
 #include "studio/kit/imgui_versions.h"
 #include "studio/kit/theme.h"
 #include "studio/kit/ui_map.h"
+#include "studio/presenting/ballot_panel.h"
 #include "studio/studio.h"
 #include "support/temporary_folder.h"
 
 namespace livery {
 
 using DrawPanel = void (*)(Studio&);
+
+inline DrawPanel draw_of(const char* panel) { return panel_named(panel).draw; }
 
 inline constexpr float kColumn = 320.0f;
 
@@ -40,8 +43,8 @@ inline Document two_looks() {
 }
 
 inline void draw_ballot(Studio& studio) {
-    bool open = true;
-    draw_ballot_panel(studio, open);
+    show_ballots(studio, true);
+    draw_ballot_panel(studio);
 }
 
 /// A studio without threads, projector and window, and an ImGui that draws nowhere.

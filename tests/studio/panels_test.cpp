@@ -13,12 +13,12 @@
 #include "core/paths.h"
 #include "scene/library.h"
 #include "studio/artwork/artwork_edit.h"
-#include "studio/ballot_panel.h"
 #include "studio/kit/theme.h"
 #include "studio/kit/ui_map.h"
 #include "studio/paint/library_panel.h"
 #include "studio/paint/swatches.h"
 #include "studio/panels_fixture.h"
+#include "studio/presenting/ballot_panel.h"
 #include "studio/studio.h"
 #include "support/temporary_folder.h"
 
@@ -54,13 +54,13 @@ TEST_P(Panels, FitIntoTheNarrowestColumn) {
     studio.frame = frame_shown;
     studio.session.execute(SetArtwork{studio.shown_look, long_names()});
     const std::vector<std::pair<DrawPanel, std::vector<std::string>>> panels{
-        {draw_artwork_panel, {"artwork:0", "artwork:1", "artwork:delete", "artwork:centre:z"}},
-        {draw_library_panel, {"paint:solid red", "paint-search", "family:all"}},
-        {draw_paint_panel, {"param:diffuse", "param:alpha", "reset-paint", "save-paint"}},
-        {draw_lighting_panel,
+        {draw_of("Artwork"), {"artwork:0", "artwork:1", "artwork:delete", "artwork:centre:z"}},
+        {draw_of("Paints"), {"paint:solid red", "paint-search", "family:all"}},
+        {draw_of("Paint"), {"param:diffuse", "param:alpha", "reset-paint", "save-paint"}},
+        {draw_of("Light"),
          {"light:0:intensity", "light-pad:1", "eye:distance", "exposure", "quality:draft"}},
-        {draw_plan_panel, {"frame-total", "skipped-passes", "pass:prepare:clearcoat"}},
-        {draw_calibration_panel,
+        {draw_of("Frame"), {"frame-total", "skipped-passes", "pass:prepare:clearcoat"}},
+        {draw_of("Calibrate"),
          {"calibrate", "open-nudge", "design-white", "keep-hue", "calibration:none"}},
         {draw_ballot, {"ballot:start", "ballot:look:1", "ballot:close-panel"}}};
     for (const auto& [draw, expected] : panels) {
@@ -120,13 +120,13 @@ TEST_F(Panels, PointingTriesAPaintAndClickingPaints) {
     use_scale(1.0f);
     Studio studio = make_studio();
     const std::uint64_t before = studio.session.revision();
-    move_to(studio, draw_library_panel, "paint:solid blue");
+    move_to(studio, draw_of("Paints"), "paint:solid blue");
     ASSERT_TRUE(studio.tried);
     EXPECT_EQ(worn(shown_document(studio)), "solid blue");
     EXPECT_EQ(worn(studio.session.document()), "solid red");
     EXPECT_EQ(studio.session.revision(), before);
 
-    click(studio, draw_library_panel, "paint:solid blue");
+    click(studio, draw_of("Paints"), "paint:solid blue");
     EXPECT_EQ(worn(studio.session.document()), "solid blue");
     EXPECT_EQ(studio.session.revision(), before + 1);
     EXPECT_EQ(worn(studio.session.document(), 1), "blue metallic");
@@ -135,13 +135,13 @@ TEST_F(Panels, PointingTriesAPaintAndClickingPaints) {
 TEST_F(Panels, ArrowsTryPaintsAndEnterPaints) {
     use_scale(1.0f);
     Studio studio = make_studio();
-    studio.panels.library->focus_search = true;
-    studio.panels.library->search = "blue";
-    frames(studio, draw_library_panel, 3);
-    press(studio, draw_library_panel, ImGuiKey_DownArrow);
-    EXPECT_EQ(studio.panels.library->cursor, "blue metallic");
+    studio.panels.of<LibraryPanelState>().focus_search = true;
+    studio.panels.of<LibraryPanelState>().search = "blue";
+    frames(studio, draw_of("Paints"), 3);
+    press(studio, draw_of("Paints"), ImGuiKey_DownArrow);
+    EXPECT_EQ(studio.panels.of<LibraryPanelState>().cursor, "blue metallic");
     EXPECT_EQ(worn(shown_document(studio)), "blue metallic");
-    press(studio, draw_library_panel, ImGuiKey_Enter);
+    press(studio, draw_of("Paints"), ImGuiKey_Enter);
     EXPECT_EQ(worn(studio.session.document()), "blue metallic");
 }
 
@@ -149,22 +149,22 @@ TEST_F(Panels, FocusThatComesBackTriesNothing) {
     use_scale(1.0f);
     Studio studio = make_studio();
     const int first = studio.shown_look, second = studio.session.document().looks[1].id;
-    click(studio, draw_library_panel, "paint:solid blue");
+    click(studio, draw_of("Paints"), "paint:solid blue");
     ASSERT_EQ(worn(studio.session.document()), "solid blue");
     stop_trying(studio);
     show_look(studio, second);  // as by its number key
-    frames(studio, draw_library_panel, 2);
-    click(studio, draw_lighting_panel, "light:1");
-    frames(studio, draw_library_panel, 2);
+    frames(studio, draw_of("Paints"), 2);
+    click(studio, draw_of("Light"), "light:1");
+    frames(studio, draw_of("Paints"), 2);
     EXPECT_FALSE(studio.tried) << text_of(*studio.tried);
-    move_away(studio, draw_library_panel);
+    move_away(studio, draw_of("Paints"));
     EXPECT_FALSE(studio.tried) << text_of(*studio.tried);
     EXPECT_EQ(worn(shown_document(studio), 1), "blue metallic");
 
     // Nor after undo, when the pointer is somewhere else by then.
     show_look(studio, first);
     studio.session.undo();
-    frames(studio, draw_library_panel, 2);
+    frames(studio, draw_of("Paints"), 2);
     EXPECT_FALSE(studio.tried) << text_of(*studio.tried);
     EXPECT_EQ(worn(shown_document(studio)), "solid red");
 }
@@ -173,40 +173,40 @@ TEST_F(Panels, APointerThatRestsTriesNothing) {
     use_scale(1.0f);
     Studio studio = make_studio();
     // The window comes up under the pointer.
-    point_at(frames(studio, draw_library_panel, 2), "paint:solid blue");
-    frames(studio, draw_library_panel, 3);
+    point_at(frames(studio, draw_of("Paints"), 2), "paint:solid blue");
+    frames(studio, draw_of("Paints"), 3);
     EXPECT_FALSE(studio.tried);
     // The pointer leaves and comes back to the same place: another window was over this one.
     const ImVec2 there = ImGui::GetIO().MousePos;
-    move_away(studio, draw_library_panel);
+    move_away(studio, draw_of("Paints"));
     ImGui::GetIO().MousePos = there;
-    frames(studio, draw_library_panel, 2);
+    frames(studio, draw_of("Paints"), 2);
     EXPECT_FALSE(studio.tried);
     // The panel changes under it.
-    frames(studio, draw_lighting_panel, 2);
-    frames(studio, draw_library_panel, 2);
+    frames(studio, draw_of("Light"), 2);
+    frames(studio, draw_of("Paints"), 2);
     EXPECT_FALSE(studio.tried);
     ImGui::GetIO().MousePos.x += 1.0f;
-    frames(studio, draw_library_panel, 2);
+    frames(studio, draw_of("Paints"), 2);
     ASSERT_TRUE(studio.tried);
     EXPECT_EQ(worn(shown_document(studio)), "solid blue");
-    frames(studio, draw_library_panel, 5);
+    frames(studio, draw_of("Paints"), 5);
     EXPECT_TRUE(studio.tried) << "as long as the pointer stays";
 }
 
 TEST_F(Panels, APaintFromTheArrowsIsTakenBackWhenTheKeysGoElsewhere) {
     use_scale(1.0f);
     Studio studio = make_studio();
-    studio.panels.library->focus_search = true;
-    studio.panels.library->search = "blue";
-    frames(studio, draw_library_panel, 3);
-    press(studio, draw_library_panel, ImGuiKey_DownArrow);
+    studio.panels.of<LibraryPanelState>().focus_search = true;
+    studio.panels.of<LibraryPanelState>().search = "blue";
+    frames(studio, draw_of("Paints"), 3);
+    press(studio, draw_of("Paints"), ImGuiKey_DownArrow);
     ASSERT_TRUE(studio.tried);
-    frames(studio, draw_library_panel, 3);
+    frames(studio, draw_of("Paints"), 3);
     EXPECT_TRUE(studio.tried) << "as long as nothing else happens";
     ImGui::ClearActiveID();
     ImGui::FocusWindow(nullptr);
-    frames(studio, draw_library_panel, 2);
+    frames(studio, draw_of("Paints"), 2);
     EXPECT_FALSE(studio.tried);
     EXPECT_EQ(worn(shown_document(studio)), "solid red");
 }
@@ -222,18 +222,18 @@ TEST_F(Panels, AJunkEnvironmentIsRefusedWhenItIsChosenAndToldWhenItGoesBad) {
     ASSERT_EQ(studio.notices.size(), 1u);
     EXPECT_NE(studio.notices[0].cause.find("junk.hdr"), std::string::npos)
         << studio.notices[0].cause;
-    frames(studio, draw_lighting_panel, 2);
+    frames(studio, draw_of("Light"), 2);
 }
 
 TEST_F(Panels, SayWhenNothingIsFound) {
     use_scale(1.0f);
     Studio studio = make_studio();
-    studio.panels.library->search = "solid rad";
-    ItemPlaces places = frames(studio, draw_library_panel, 2);
+    studio.panels.of<LibraryPanelState>().search = "solid rad";
+    ItemPlaces places = frames(studio, draw_of("Paints"), 2);
     EXPECT_FALSE(places.contains("paint:solid red"));
-    click(studio, draw_library_panel, "paint-nearest");
-    places = frames(studio, draw_library_panel, 2);
-    EXPECT_EQ(studio.panels.library->search, "solid red");
+    click(studio, draw_of("Paints"), "paint-nearest");
+    places = frames(studio, draw_of("Paints"), 2);
+    EXPECT_EQ(studio.panels.of<LibraryPanelState>().search, "solid red");
     EXPECT_TRUE(places.contains("paint:solid red"));
 }
 
@@ -241,18 +241,18 @@ TEST_F(Panels, DraggingAParameterMakesOneStep) {
     use_scale(1.0f);
     Studio studio = make_studio();
     const std::uint64_t before = studio.session.revision();
-    point_at(frames(studio, draw_paint_panel, 2), "param:coat_alpha");
-    frames(studio, draw_paint_panel, 2);
+    point_at(frames(studio, draw_of("Paint"), 2), "param:coat_alpha");
+    frames(studio, draw_of("Paint"), 2);
     ImGui::GetIO().MouseDown[0] = true;
     for (int i = 0; i < 5; ++i) {
         ImGui::GetIO().MousePos.x += 4.0f;
-        frame(studio, draw_paint_panel);
+        frame(studio, draw_of("Paint"));
     }
     EXPECT_EQ(studio.session.revision(), before);
     ASSERT_TRUE(studio.tried);
     const Material tried = find_paint(shown_document(studio), "solid red 2");
     ImGui::GetIO().MouseDown[0] = false;
-    frames(studio, draw_paint_panel, 2);
+    frames(studio, draw_of("Paint"), 2);
     EXPECT_EQ(studio.session.revision(), before + 1);
     EXPECT_EQ(worn(studio.session.document()), "solid red 2");
     EXPECT_EQ(find_paint(studio.session.document(), "solid red 2").coat_alpha, tried.coat_alpha);
@@ -264,8 +264,8 @@ TEST_F(Panels, APressWithoutAChangeIsNoEdit) {
     use_scale(1.0f);
     Studio studio = make_studio();
     const std::uint64_t before = studio.session.revision();
-    click(studio, draw_paint_panel, "param:diffuse:swatch");
-    click(studio, draw_paint_panel, "param:diffuse:r");
+    click(studio, draw_of("Paint"), "param:diffuse:swatch");
+    click(studio, draw_of("Paint"), "param:diffuse:r");
     EXPECT_EQ(studio.session.revision(), before);
 }
 
@@ -273,19 +273,19 @@ TEST_F(Panels, ALightIsAddedPulledAndRemoved) {
     use_scale(1.0f);
     Studio studio = make_studio();
     const auto lights = [&] { return studio.session.document().looks[0].look.lights; };
-    click(studio, draw_lighting_panel, "add-light");
+    click(studio, draw_of("Light"), "add-light");
     ASSERT_EQ(lights().size(), 3u);
     const glm::dvec3 direction = lights()[2].direction;
-    point_at(frames(studio, draw_lighting_panel, 2), "light-pad:2");
-    frames(studio, draw_lighting_panel, 2);
+    point_at(frames(studio, draw_of("Light"), 2), "light-pad:2");
+    frames(studio, draw_of("Light"), 2);
     ImGui::GetIO().MouseDown[0] = true;
     for (int i = 0; i < 5; ++i) {
         ImGui::GetIO().MousePos.x += 5.0f;
-        frame(studio, draw_lighting_panel);
+        frame(studio, draw_of("Light"));
     }
     EXPECT_EQ(lights()[2].direction, direction);
     ImGui::GetIO().MouseDown[0] = false;
-    frames(studio, draw_lighting_panel, 2);
+    frames(studio, draw_of("Light"), 2);
     EXPECT_GT(lights()[2].direction.x, direction.x);
     EXPECT_EQ(lights()[0].direction, two_looks().looks[0].look.lights[0].direction);
 }
@@ -294,33 +294,33 @@ TEST_F(Panels, ArtworkIsTriedInTheMenuAddedDraggedAndUndone) {
     use_scale(1.0f);
     Studio studio = make_studio();
     const auto artwork = [&] { return studio.session.document().looks[0].look.artwork; };
-    click(studio, draw_artwork_panel, "artwork:add");
-    frames(studio, draw_artwork_panel, 2);
+    click(studio, draw_of("Artwork"), "artwork:add");
+    frames(studio, draw_of("Artwork"), 2);
     EXPECT_FALSE(studio.tried) << "a list that opens under the pointer tries nothing";
-    point_at(frames(studio, draw_artwork_panel, 3), "artwork:add:dots");
-    frames(studio, draw_artwork_panel, 2);
+    point_at(frames(studio, draw_of("Artwork"), 3), "artwork:add:dots");
+    frames(studio, draw_of("Artwork"), 2);
     ASSERT_TRUE(studio.tried);
     EXPECT_EQ(find_look(shown_document(studio), 1)->look.artwork.size(), 1u);
     EXPECT_TRUE(artwork().empty());
-    click(studio, draw_artwork_panel, "artwork:add:stripes");
+    click(studio, draw_of("Artwork"), "artwork:add:stripes");
     ASSERT_EQ(artwork().size(), 1u);
     EXPECT_EQ(artwork()[0].part, "sphere");
     EXPECT_EQ(artwork()[0].paint, "solid ivory") << "over red";
 
     const std::uint64_t before = studio.session.revision();
     const double size_mm = artwork()[0].size_mm;
-    point_at(frames(studio, draw_artwork_panel, 2), "artwork:size");
-    frames(studio, draw_artwork_panel, 2);
+    point_at(frames(studio, draw_of("Artwork"), 2), "artwork:size");
+    frames(studio, draw_of("Artwork"), 2);
     ImGui::GetIO().MouseDown[0] = true;
     for (int i = 0; i < 5; ++i) {
         ImGui::GetIO().MousePos.x += 6.0f;
-        frame(studio, draw_artwork_panel);
+        frame(studio, draw_of("Artwork"));
     }
     EXPECT_EQ(studio.session.revision(), before);
     ASSERT_TRUE(studio.tried);
     EXPECT_NE(find_look(shown_document(studio), 1)->look.artwork[0].size_mm, size_mm);
     ImGui::GetIO().MouseDown[0] = false;
-    frames(studio, draw_artwork_panel, 2);
+    frames(studio, draw_of("Artwork"), 2);
     EXPECT_EQ(studio.session.revision(), before + 1);
     EXPECT_NE(artwork()[0].size_mm, size_mm);
     studio.session.undo();
@@ -341,14 +341,14 @@ TEST_F(Panels, ArtworkIsOrderedCopiedAndDeleted) {
         }
         return text;
     };
-    click(studio, draw_artwork_panel, "artwork:down");
+    click(studio, draw_of("Artwork"), "artwork:down");
     EXPECT_EQ(names(), "above below ");
-    click(studio, draw_artwork_panel, "artwork:duplicate");
+    click(studio, draw_of("Artwork"), "artwork:duplicate");
     EXPECT_EQ(names(), "above above 2 below ");
-    click(studio, draw_artwork_panel, "artwork:2");
-    click(studio, draw_artwork_panel, "artwork:delete");
+    click(studio, draw_of("Artwork"), "artwork:2");
+    click(studio, draw_of("Artwork"), "artwork:delete");
     EXPECT_EQ(names(), "above above 2 ");
-    click(studio, draw_artwork_panel, "artwork:side:above");
+    click(studio, draw_of("Artwork"), "artwork:side:above");
     EXPECT_EQ(studio.session.document().looks[0].look.artwork[1].place.direction,
               glm::dvec3(0.0, -1.0, 0.0));
 }
@@ -368,7 +368,7 @@ TEST_F(Panels, ArtworkThatAPaintCannotWearIsRefusedWithTheReason) {
     print.picture = file.string();
     studio.session.execute(SetArtwork{studio.shown_look, {print}});
     const std::uint64_t before = studio.session.revision();
-    frames(studio, draw_artwork_panel, 2);
+    frames(studio, draw_of("Artwork"), 2);
     print.use = PictureUse::roughness;
     set_artwork_at(studio, 0, print);
     EXPECT_EQ(studio.session.revision(), before);
@@ -390,18 +390,18 @@ TEST_F(Panels, ArtworkThatNobodySeesSaysSo) {
     dots.shape = ArtworkShape::dots;
     dots.paint.clear();
     studio.session.execute(SetArtwork{studio.shown_look, {dots}});
-    EXPECT_TRUE(frames(studio, draw_artwork_panel, 2).contains("artwork:not-seen"));
+    EXPECT_TRUE(frames(studio, draw_of("Artwork"), 2).contains("artwork:not-seen"));
     dots.paint = "solid red";
     studio.session.execute(SetArtwork{studio.shown_look, {dots}});
-    EXPECT_TRUE(frames(studio, draw_artwork_panel, 2).contains("artwork:not-seen"));
+    EXPECT_TRUE(frames(studio, draw_of("Artwork"), 2).contains("artwork:not-seen"));
     dots.paint = "solid blue";
     studio.session.execute(SetArtwork{studio.shown_look, {dots}});
-    EXPECT_FALSE(frames(studio, draw_artwork_panel, 2).contains("artwork:not-seen"));
+    EXPECT_FALSE(frames(studio, draw_of("Artwork"), 2).contains("artwork:not-seen"));
     // Over other artwork the part's own paint is seen: it leaves that out.
     Artwork own = dots;
     own.paint.clear();
     studio.session.execute(SetArtwork{studio.shown_look, {dots, own}});
-    EXPECT_FALSE(frames(studio, draw_artwork_panel, 2).contains("artwork:not-seen"));
+    EXPECT_FALSE(frames(studio, draw_of("Artwork"), 2).contains("artwork:not-seen"));
     // A paint that is put below later may not wear it.
     const auto file = home_ / "gloss.png";
     write_png(file, Image8(4, 4, 3, 100));
@@ -410,12 +410,12 @@ TEST_F(Panels, ArtworkThatNobodySeesSaysSo) {
     gloss.picture = file.string();
     gloss.use = PictureUse::roughness;
     studio.session.execute(SetArtwork{studio.shown_look, {gloss}});
-    EXPECT_FALSE(frames(studio, draw_artwork_panel, 2).contains("artwork:not-seen"));
+    EXPECT_FALSE(frames(studio, draw_of("Artwork"), 2).contains("artwork:not-seen"));
     Material matte;
     matte.name = "solid red";
     matte.model = ReflectanceModel::eon;
     studio.session.execute(EditPaint{studio.shown_look, "sphere", matte});
-    EXPECT_TRUE(frames(studio, draw_artwork_panel, 2).contains("artwork:not-seen"));
+    EXPECT_TRUE(frames(studio, draw_of("Artwork"), 2).contains("artwork:not-seen"));
 }
 
 TEST_F(Panels, AColourThatThePaintCannotHaveStaysInSight) {
@@ -426,7 +426,7 @@ TEST_F(Panels, AColourThatThePaintCannotHaveStaysInSight) {
             .material;
     made.name = "silver metallic";
     commit(studio, EditPaint{studio.shown_look, "sphere", made});
-    EXPECT_TRUE(frames(studio, draw_paint_panel, 3).contains("paint-colour-asked"));
+    EXPECT_TRUE(frames(studio, draw_of("Paint"), 3).contains("paint-colour-asked"));
     const Material now = find_paint(studio.session.document(), "silver metallic 2");
     const auto asked = colour_record(now.provenance);
     ASSERT_TRUE(asked) << now.provenance;
@@ -438,9 +438,9 @@ TEST_F(Panels, ArtworkFollowsThePointerUntilItIsPlaced) {
     use_scale(1.0f);
     Studio studio = make_studio();
     studio.session.execute(SetArtwork{studio.shown_look, {long_names()[0]}});
-    frames(studio, draw_artwork_panel, 2);
+    frames(studio, draw_of("Artwork"), 2);
     EXPECT_FALSE(is_placing(studio));
-    click(studio, draw_artwork_panel, "artwork:place");
+    click(studio, draw_of("Artwork"), "artwork:place");
     ASSERT_TRUE(is_placing(studio));
     const PickedPoint point{0, {10.0, 20.0, 30.0}, {1.0, 0.0, 0.0}};
     const std::uint64_t before = studio.session.revision();
@@ -453,7 +453,7 @@ TEST_F(Panels, ArtworkFollowsThePointerUntilItIsPlaced) {
     EXPECT_EQ(studio.session.document().looks[0].look.artwork[0].place.centre_mm,
               point.position_mm);
     // Another look's artwork is not placed by what was begun here.
-    click(studio, draw_artwork_panel, "artwork:place");
+    click(studio, draw_of("Artwork"), "artwork:place");
     studio.shown_look = studio.session.document().looks[1].id;
     EXPECT_FALSE(is_placing(studio));
 }

@@ -1,6 +1,6 @@
-#include "studio/window/preview_lag.h"
-
 #include <gtest/gtest.h>
+
+#include "studio/drawing.h"
 
 namespace livery {
 namespace {

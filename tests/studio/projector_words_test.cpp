@@ -1,7 +1,7 @@
 // What the bar says of the projector.
-#include "studio/projector_words.h"
-
 #include <gtest/gtest.h>
+
+#include "studio/projector.h"
 
 namespace livery {
 namespace {
@@ -31,9 +31,7 @@ TEST(ProjectorWords, SayShowingOnlyOfWhatIsShown) {
     EXPECT_FALSE(says_showing(with([](auto& f) { f.black = true; })));
     EXPECT_FALSE(says_showing(with([](auto& f) { f.frozen = true; })));
     EXPECT_FALSE(says_showing(with([](auto& f) { f.monitor_numbers = true; })));
-    EXPECT_FALSE(says_showing(with([](auto& f) { f.signal_test = true; })));
-    EXPECT_FALSE(says_showing(with([](auto& f) { f.nudge = true; })));
-    EXPECT_FALSE(says_showing(with([](auto& f) { f.freezing = true; })));
+    EXPECT_FALSE(says_showing(with([](auto& f) { f.instead = {"showing the test picture"}; })));
     EXPECT_FALSE(says_showing(with([](auto& f) { f.not_drawn = "a file is gone"; })));
     EXPECT_FALSE(says_showing(with([](auto& f) { f.other_product = "made for a bottle"; })));
     EXPECT_FALSE(says_showing(with([](auto& f) { f.state = State::off; })));

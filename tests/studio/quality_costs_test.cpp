@@ -1,11 +1,11 @@
 // What frames cost, as they were measured.
-#include "studio/quality_costs.h"
+#include "studio/frame/quality_costs.h"
 
 #include <gtest/gtest.h>
 
 #include "core/paths.h"
+#include "studio/frame/plan_panel.h"
 #include "studio/panels_fixture.h"
-#include "studio/plan_panel.h"
 
 namespace livery {
 namespace {
@@ -78,7 +78,7 @@ TEST_F(KnownCosts, OnAFreshMachineAreTheShippedOnesUntilFramesScaleThem) {
     Studio studio = make_studio();
     const PassCosts shipped = pass_costs(studio);
     EXPECT_EQ(shipped.origin, CostOrigin::shipped);
-    EXPECT_TRUE(studio.panels.plan->problem.empty());
+    EXPECT_TRUE(studio.panels.of<PlanPanelState>().problem.empty());
     // A frame that took three times as long as the shipped costs say
     FramePlan drawn =
         plan_frame(scene_of(studio.session.document(), studio.shown_look, studio.product),
@@ -130,7 +130,7 @@ TEST_F(KnownCosts, MeasuredOnesStayAndAMalformedFileIsSaid) {
     write_text_file(pass_costs_file(), "{");
     Studio other = make_studio();
     EXPECT_EQ(pass_costs(other).origin, CostOrigin::shipped);
-    EXPECT_NE(other.panels.plan->problem.find("bench.json"), std::string::npos);
+    EXPECT_NE(other.panels.of<PlanPanelState>().problem.find("bench.json"), std::string::npos);
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
 // A measured paint of the user's comes into the library without the window waiting for its file.
-#include "studio/paint/users_library.h"
+#include "studio/users_library.h"
 
 #include <condition_variable>
 #include <cstdlib>
@@ -66,14 +66,14 @@ TEST_F(UsersLibrary, AMeasuredPaintIsThereOnceItsFileWasReadBehind) {
     EXPECT_TRUE(current_library(studio_).users.empty()) << "the window waited for the file";
     EXPECT_TRUE(current_library(studio_).problems.empty());
     EXPECT_EQ(current_library(studio_).unread.size(), 1u);
-    EXPECT_EQ(studio_.panels.library->reading.files.size(), 1u);
+    EXPECT_EQ(studio_.panels.of<LibraryReadings>().now.files.size(), 1u);
     const std::uint64_t revision = studio_.session.revision();
 
     wait_for_background();
     ASSERT_EQ(current_library(studio_).users.size(), 1u);
     EXPECT_EQ(current_library(studio_).users[0].name, "my tile");
     EXPECT_TRUE(current_library(studio_).unread.empty());
-    EXPECT_TRUE(studio_.panels.library->reading.files.empty());
+    EXPECT_TRUE(studio_.panels.of<LibraryReadings>().now.files.empty());
     EXPECT_FALSE(studio_.background->is_busy());
     EXPECT_GT(studio_.session.revision(), revision) << "nobody draws it";
     const Material found = find_paint(studio_.session.document(), "My-Tile");
@@ -90,7 +90,7 @@ TEST_F(UsersLibrary, AFileThatCannotBeReadIsAProblemAndIsReadOnce) {
     const auto problems = current_library(studio_).problems;
     ASSERT_EQ(problems.size(), 1u);
     EXPECT_NE(problems[0].find("cut off.binary"), std::string::npos) << problems[0];
-    EXPECT_FALSE(studio_.panels.library->reading.asked);
+    EXPECT_FALSE(studio_.panels.of<LibraryReadings>().now.asked);
     EXPECT_FALSE(studio_.background->is_busy());
 }
 
@@ -124,7 +124,7 @@ TEST_F(UsersLibrary, APaintThatWasSavedMeanwhileStays) {
     studio_.session.use(read_paint_library(studio_.session.document().library));
     write_paint("my tile", grey_tile());
     do wait_for_background();
-    while (studio_.panels.library->reading.asked);
+    while (studio_.panels.of<LibraryReadings>().now.asked);
     EXPECT_NE(current_library(studio_).find("saved"), nullptr);
     EXPECT_TRUE(is_read(*current_library(studio_).find("my tile")));
 }

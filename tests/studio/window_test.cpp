@@ -8,8 +8,8 @@
 #include "core/json.h"
 #include "studio/kit/file_dialog.h"
 #include "studio/kit/ui_map.h"
-#include "studio/look_files.h"
-#include "studio/window/trace.h"
+#include "studio/looks/look_files.h"
+#include "studio/trace.h"
 #include "studio/window/window_place.h"
 #include "support/temporary_folder.h"
 

@@ -15,7 +15,7 @@
 #include "studio/kit/words.h"
 #include "studio/paint/paint_choice.h"
 #include "studio/paint/parts_panel.h"
-#include "studio/paint/users_library.h"
+#include "studio/users_library.h"
 
 namespace livery {
 
@@ -56,7 +56,7 @@ const std::vector<Artwork>& shown_artwork(const Studio& studio) {
 }
 
 std::optional<std::size_t> chosen_artwork(const Studio& studio) {
-    const ArtworkPanelState& state = *studio.panels.artwork;
+    const ArtworkPanelState& state = studio.panels.of<ArtworkPanelState>();
     const std::size_t count = shown_artwork(studio).size();
     if (count == 0) return std::nullopt;
     if (state.look != studio.shown_look || !state.chosen || *state.chosen >= count) {
@@ -66,7 +66,7 @@ std::optional<std::size_t> chosen_artwork(const Studio& studio) {
 }
 
 void choose_artwork(Studio& studio, std::optional<std::size_t> at) {
-    ArtworkPanelState& state = *studio.panels.artwork;
+    ArtworkPanelState& state = studio.panels.of<ArtworkPanelState>();
     if (state.look == studio.shown_look && state.chosen == at) return;
     state = {};
     state.look = studio.shown_look;
@@ -127,7 +127,7 @@ std::string look_up_why_not_seen(Studio& studio, std::size_t at) {
 }  // namespace
 
 const std::string& why_not_seen(Studio& studio, std::size_t at) {
-    ArtworkPanelState& state = *studio.panels.artwork;
+    ArtworkPanelState& state = studio.panels.of<ArtworkPanelState>();
     const std::vector<Artwork>& list = shown_artwork(studio);
     if (state.looked_up_at != studio.session.revision() || state.not_seen.size() != list.size()) {
         state.looked_up_at = studio.session.revision();
@@ -219,17 +219,17 @@ void ask_for_picture(Studio& studio,
 }
 
 bool is_placing(const Studio& studio) {
-    return studio.panels.artwork->placing && chosen_artwork(studio).has_value() &&
-           studio.panels.artwork->look == studio.shown_look;
+    return studio.panels.of<ArtworkPanelState>().placing && chosen_artwork(studio).has_value() &&
+           studio.panels.of<ArtworkPanelState>().look == studio.shown_look;
 }
 
 void stop_placing(Studio& studio) {
-    studio.panels.artwork->placing = false;
-    studio.panels.artwork->placed.reset();
+    studio.panels.of<ArtworkPanelState>().placing = false;
+    studio.panels.of<ArtworkPanelState>().placed.reset();
 }
 
 void try_placing(Studio& studio, const std::optional<PickedPoint>& point) {
-    ArtworkPanelState& state = *studio.panels.artwork;
+    ArtworkPanelState& state = studio.panels.of<ArtworkPanelState>();
     const std::size_t at = *chosen_artwork(studio);
     if (point) state.placed = placed_at(studio, at, *point);
     if (state.placed && wearing_problem(studio, *state.placed).empty()) {

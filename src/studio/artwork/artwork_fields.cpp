@@ -56,7 +56,7 @@ class ArtworkRows {
         after_item();
     }
     void after_item() {
-        ArtworkPanelState& state = *studio_.panels.artwork;
+        ArtworkPanelState& state = studio_.panels.of<ArtworkPanelState>();
         state.held.after_item();
         const bool touched = last_item_is_held() || ImGui::IsItemDeactivatedAfterEdit();
         // What was put back where it was is no edit.
@@ -101,7 +101,7 @@ bool begin_list(const char* label,
 }
 
 void draw_name(ArtworkRows& rows) {
-    ArtworkPanelState& state = *rows.studio().panels.artwork;
+    ArtworkPanelState& state = rows.studio().panels.of<ArtworkPanelState>();
     row_label("Name");
     if (!state.naming) state.name = rows.before().name;
     ImGui::InputTextWithHint("##name",
@@ -161,7 +161,7 @@ void draw_shape(ArtworkRows& rows) {
 
 void draw_paint(ArtworkRows& rows) {
     Studio& studio = rows.studio();
-    ArtworkPanelState& state = *studio.panels.artwork;
+    ArtworkPanelState& state = studio.panels.of<ArtworkPanelState>();
     const Artwork& before = rows.before();
     const Words use = words_of(before.use);
     std::string meaning = "What it is painted with.";
@@ -325,7 +325,7 @@ void draw_direction(ArtworkRows& rows, ArtworkPlace& place) {
 
 void draw_place_button(ArtworkRows& rows) {
     Studio& studio = rows.studio();
-    ArtworkPanelState& state = *studio.panels.artwork;
+    ArtworkPanelState& state = studio.panels.of<ArtworkPanelState>();
     const float width = ImGui::GetContentRegionAvail().x;
     if (toggle_button("Place it by a click", state.placing, width)) {
         const bool wanted = !state.placing;
@@ -376,7 +376,7 @@ void draw_place(ArtworkRows& rows, Artwork& edited) {
 }  // namespace
 
 void draw_artwork_fields(Studio& studio, std::size_t at) {
-    ArtworkPanelState& state = *studio.panels.artwork;
+    ArtworkPanelState& state = studio.panels.of<ArtworkPanelState>();
     Artwork& edited = state.held.start(shown_artwork(studio)[at]);
     ArtworkRows rows(studio, at, edited);
     draw_name(rows);

@@ -189,4 +189,29 @@ void draw_artwork_panel(Studio& studio) {
     if (const auto at = chosen_artwork(studio)) draw_artwork_fields(studio, *at);
 }
 
+namespace {
+
+bool give_up_placing(Studio& studio) {
+    if (!is_placing(studio)) return false;
+    stop_placing(studio);
+    stop_trying(studio);
+    return true;
+}
+
+void describe_artwork(const Studio& studio, MapState& state) {
+    // As the command that would make it: what is kept, not what is being tried.
+    state["artwork"] = text_of(SetArtwork{studio.shown_look, shown_artwork(studio)});
+    state["placing"] = map_text(is_placing(studio));
+}
+
+}  // namespace
+
+Panel artwork_panel() {
+    return {.name = "Artwork",
+            .place = PanelPlace::tab,
+            .draw = draw_artwork_panel,
+            .give_up = give_up_placing,
+            .describe = describe_artwork};
+}
+
 }  // namespace livery

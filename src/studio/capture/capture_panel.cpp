@@ -18,10 +18,8 @@
 #include "studio/kit/user_settings.h"
 #include "studio/kit/widgets.h"
 #include "studio/kit/words.h"
-#include "studio/nudge/nudge_panel.h"
-#include "studio/projector_words.h"
-#include "studio/results.h"
-#include "studio/window/shell.h"
+#include "studio/projector.h"
+#include "studio/studio.h"
 
 namespace livery {
 
@@ -68,9 +66,9 @@ using Doing = CaptureView::Doing;
 
 constexpr double kBetweenListings_s = 3.0;
 
-void list_what_there_is(Shell& shell) {
-    CapturePanelState& state = *shell.studio.panels.capture;
-    const double now_s = shell.studio.now_s;
+void list_cameras_now_and_then(Studio& studio) {
+    CapturePanelState& state = studio.panels.of<CapturePanelState>();
+    const double now_s = studio.now_s;
     if (state.listed_at_s >= 0.0 && now_s - state.listed_at_s < kBetweenListings_s) return;
     state.listed_at_s = now_s;
     state.problem.clear();
@@ -82,10 +80,9 @@ void list_what_there_is(Shell& shell) {
 }
 
 /// The chosen monitor, while pictures reach it.
-std::optional<Monitor> projector_monitor(const Shell& shell) {
-    const Studio& studio = shell.studio;
+std::optional<Monitor> projector_monitor(const Studio& studio) {
     if (studio.projector->state() != ProjectorScreen::State::showing) return std::nullopt;
-    return find_monitor(studio.monitors, shell.projector_monitor);
+    return find_monitor(studio.monitors, studio.projector_monitor);
 }
 
 bool has_own_projector(const CameraChoice& choice) {
@@ -93,9 +90,9 @@ bool has_own_projector(const CameraChoice& choice) {
 }
 
 /// Where the projector stands, as far as the calibration in use knows and the monitor agrees.
-std::optional<View> known_pose(const Shell& shell) {
-    const auto monitor = projector_monitor(shell);
-    const auto& setup = shell.studio.setup;
+std::optional<View> known_pose(const Studio& studio) {
+    const auto monitor = projector_monitor(studio);
+    const auto& setup = studio.setup;
     if (!monitor || !setup || !setup->calibration) return std::nullopt;
     const bool same = setup->view.width == monitor->width && setup->view.height == monitor->height;
     return same ? std::optional(setup->view) : std::nullopt;
@@ -109,9 +106,9 @@ bool are_whole(const DataSheets& sheets) {
 using Place = CapturePanelState::Place;
 
 /// As chosen, while it can be; else what needs the least of people.
-Place place_of(const Shell& shell) {
-    const CapturePanelState& state = *shell.studio.panels.capture;
-    const bool known = known_pose(shell).has_value(), own = has_own_projector(*state.chosen);
+Place place_of(const Studio& studio) {
+    const CapturePanelState& state = studio.panels.of<CapturePanelState>();
+    const bool known = known_pose(studio).has_value(), own = has_own_projector(*state.chosen);
     if (state.place == Place::kept && known) return Place::kept;
     if (state.place && *state.place != Place::kept) return *state.place;
     if (own) return Place::found;
@@ -120,25 +117,25 @@ Place place_of(const Shell& shell) {
 
 }  // namespace
 
-CaptureSetup capture_setup(const Shell& shell, const CameraChoice& choice) {
-    const CapturePanelState& state = *shell.studio.panels.capture;
+CaptureSetup capture_setup(const Studio& studio, const CameraChoice& choice) {
+    const CapturePanelState& state = studio.panels.of<CapturePanelState>();
     CaptureSetup setup;
     setup.camera = choice;
-    setup.product = shell.studio.product;
-    if (const auto monitor = projector_monitor(shell)) {
+    setup.product = studio.product;
+    if (const auto monitor = projector_monitor(studio)) {
         setup.projector =
             fmt::format("{} at {}x{}", monitor->name, monitor->width, monitor->height);
         setup.width = monitor->width;
         setup.height = monitor->height;
     }
-    const Place place = place_of(shell);
-    if (place == Place::kept) setup.projector_view = known_pose(shell);
+    const Place place = place_of(studio);
+    if (place == Place::kept) setup.projector_view = known_pose(studio);
     if (place == Place::found && are_whole(state.sheets)) setup.data_sheets = state.sheets;
     setup.colour_shots = state.colour_shots;
     setup.places = state.colour_shots >= 4 ? PlaceCode::gray_and_phase : PlaceCode::gray;
-    setup.in_use = shell.studio.session.document().calibration;
-    Results* results = shell.results.get();
-    ProjectorScreen* screen = shell.studio.projector.get();
+    setup.in_use = studio.session.document().calibration;
+    Results* results = studio.results.get();
+    ProjectorScreen* screen = studio.projector.get();
     setup.projector_port = [results, screen](const Progress& progress, TellWait tell) {
         return show_on({[results](auto picture) { results->show_instead(std::move(picture)); },
                         [screen] { return screen->shown(); }},
@@ -150,32 +147,32 @@ CaptureSetup capture_setup(const Shell& shell, const CameraChoice& choice) {
 
 namespace {
 
-void choose(Shell& shell, const CameraChoice& choice) {
-    CapturePanelState& state = *shell.studio.panels.capture;
+void choose(Studio& studio, const CameraChoice& choice) {
+    CapturePanelState& state = studio.panels.of<CapturePanelState>();
     state.chosen = choice;
     state.selected.reset();
-    shell.studio.capture->use(capture_setup(shell, choice));
+    studio.capture->use(capture_setup(studio, choice));
 }
 
-void connect(Shell& shell) {
-    CapturePanelState& state = *shell.studio.panels.capture;
+void connect(Studio& studio) {
+    CapturePanelState& state = studio.panels.of<CapturePanelState>();
     state.address_problem.clear();
     try {
-        choose(shell, camera_at_address(state.address));
+        choose(studio, camera_at_address(state.address));
     } catch (const std::invalid_argument& error) {
         state.address_problem = error.what();
     }
 }
 
-void ask_for_folder(Shell& shell) {
+void ask_for_folder(Studio& studio) {
     FileQuestion question;
     question.kind = FileQuestion::Kind::folder;
     question.title = "Where will the photographs be copied?";
     question.action = "Choose";
-    question.then = [&shell](const std::filesystem::path& folder) {
-        choose(shell, {CameraChoice::Kind::folder, std::filesystem::absolute(folder).string()});
+    question.then = [&studio](const std::filesystem::path& folder) {
+        choose(studio, {CameraChoice::Kind::folder, std::filesystem::absolute(folder).string()});
     };
-    shell.studio.file_dialog->ask(std::move(question));
+    studio.file_dialog->ask(std::move(question));
 }
 
 /// In the camera's own words; a list where it can be set from here.
@@ -197,8 +194,8 @@ void draw_setting(CaptureThread& capture, const CameraSetting& setting) {
     name_last_item("camera-" + setting.name);
 }
 
-void draw_cameras(Shell& shell) {
-    CapturePanelState& state = *shell.studio.panels.capture;
+void draw_cameras(Studio& studio) {
+    CapturePanelState& state = studio.panels.of<CapturePanelState>();
     heading("Camera");
     begin_disabled(is_busy(state.view));
     const std::string shown = state.chosen ? text_of(*state.chosen) : "Choose…";
@@ -206,13 +203,13 @@ void draw_cameras(Shell& shell) {
     if (ImGui::BeginCombo("##camera", shown.c_str(), ImGuiComboFlags_HeightLarge)) {
         for (const ListedCamera& camera : state.cameras) {
             if (ImGui::Selectable(camera.name.c_str(), shown == camera.choice))
-                choose(shell, parse_camera_choice(camera.choice));
+                choose(studio, parse_camera_choice(camera.choice));
             name_last_item("camera:" + camera.choice);
             if (!camera.problem.empty()) tooltip(camera.problem + "\n" + camera.fix);
         }
         ImGui::Separator();
         if (ImGui::Selectable("Any other: shoot, and copy the photographs into a folder…"))
-            ask_for_folder(shell);
+            ask_for_folder(studio);
         name_last_item("camera:folder");
         ImGui::EndCombo();
     }
@@ -227,7 +224,7 @@ void draw_cameras(Shell& shell) {
         "A camera on the network. A still camera (PTP/IP): ptpip:HOST or ptpip:HOST:PORT. A "
         "network camera: the address of its video, http://… or rtsp://…");
     ImGui::SameLine();
-    if (ImGui::Button("Connect") || entered) connect(shell);
+    if (ImGui::Button("Connect") || entered) connect(studio);
     name_last_item("camera-connect");
     end_disabled();
     if (!state.address_problem.empty()) warning_text(sentence(state.address_problem));
@@ -239,20 +236,20 @@ void draw_cameras(Shell& shell) {
 }
 
 /// What is seldom needed once the camera is there.
-void draw_camera_settings(Shell& shell) {
-    const CaptureView& view = shell.studio.panels.capture->view;
+void draw_camera_settings(Studio& studio) {
+    const CaptureView& view = studio.panels.of<CapturePanelState>().view;
     if (view.camera.empty()) return;
     heading("Camera's settings");
     dim_text(sentence(view.camera));
     begin_disabled(is_busy(view));
-    for (const CameraSetting& setting : view.settings) draw_setting(*shell.studio.capture, setting);
+    for (const CameraSetting& setting : view.settings) draw_setting(*studio.capture, setting);
     end_disabled();
     if (!view.curve.empty()) dim_text("Its 8-bit files are read with " + view.curve + ".");
 }
 
 /// The five figures that photographs do not tell.
-void draw_data_sheets(Shell& shell) {
-    CapturePanelState& state = *shell.studio.panels.capture;
+void draw_data_sheets(Studio& studio) {
+    CapturePanelState& state = studio.panels.of<CapturePanelState>();
     DataSheets& sheets = state.sheets;
     bool changed = false;
     const auto row = [&](const char* label,
@@ -294,19 +291,19 @@ void draw_data_sheets(Shell& shell) {
         "%.0f mm",
         "From the projector's lens to the camera's, by a tape.");
     if (!changed) return;
-    keep_data_sheets(shell.studio.settings, sheets);
-    choose(shell, *state.chosen);
+    keep_data_sheets(studio.settings, sheets);
+    choose(studio, *state.chosen);
 }
 
 /// How the projector's place comes to be known.
-void draw_place(Shell& shell) {
-    CapturePanelState& state = *shell.studio.panels.capture;
-    const Place place = place_of(shell);
+void draw_place(Studio& studio) {
+    CapturePanelState& state = studio.panels.of<CapturePanelState>();
+    const Place place = place_of(studio);
     begin_disabled(is_busy(state.view));
     const auto offer = [&](Place which, const char* label, const char* item, const char* meaning) {
         if (ImGui::RadioButton(label, place == which) && place != which) {
             state.place = which;
-            choose(shell, *state.chosen);
+            choose(studio, *state.chosen);
         }
         name_last_item(item);
         tooltip(meaning);
@@ -315,7 +312,7 @@ void draw_place(Shell& shell) {
           "find where it stands, from photographs",
           "place-found",
           "Gray code on the mock-up, its mesh, and the data sheets of projector and camera.");
-    if (known_pose(shell))
+    if (known_pose(studio))
         offer(Place::kept,
               "it stands as in the calibration in use",
               "place-kept",
@@ -331,7 +328,7 @@ void draw_place(Shell& shell) {
             ImGui::SetNextItemOpen(!whole, ImGuiCond_Appearing);
             const bool open = ImGui::CollapsingHeader("Data sheets");
             name_last_item("data-sheets");
-            if (open) draw_data_sheets(shell);
+            if (open) draw_data_sheets(studio);
         }
         if (place == Place::found && !are_whole(state.sheets))
             warning_text("All five figures are needed: photographs alone leave sizes open.");
@@ -340,79 +337,151 @@ void draw_place(Shell& shell) {
 }
 
 /// True where there is something to show pictures on.
-bool draw_projector(Shell& shell) {
-    CapturePanelState& state = *shell.studio.panels.capture;
+bool draw_projector(Studio& studio) {
+    CapturePanelState& state = studio.panels.of<CapturePanelState>();
     heading("Projector");
     if (has_own_projector(*state.chosen)) {
         dim_text("The simulated bench's own.");
-        draw_place(shell);
+        draw_place(studio);
         return true;
     }
-    const auto monitor = projector_monitor(shell);
+    const auto monitor = projector_monitor(studio);
     if (!monitor) {
         warning_text("No projector shows pictures. Choose it in the bar below.");
         return false;
     }
     dim_text(fmt::format("{}, {} × {}.", monitor->name, monitor->width, monitor->height));
-    for (const SignalWarning& warning : shell.signal_warnings) {
+    for (const SignalWarning& warning : studio.signal_warnings) {
         coloured_text(colour_of(warning.severity), warning.what);
         name_last_item(fmt::format("capture-signal:{}", name_of(warning.severity)));
         tooltip(warning.cause + "\n" + warning.fix);
         if (warning.severity == SignalWarning::Severity::error) dim_text(warning.fix);
     }
-    draw_place(shell);
+    draw_place(studio);
     return true;
 }
 
 }  // namespace
 
-void take_capture(Shell& shell) {
-    Studio& studio = shell.studio;
+void take_capture(Studio& studio) {
     if (!studio.capture) return;
-    CapturePanelState& state = *studio.panels.capture;
+    CapturePanelState& state = studio.panels.of<CapturePanelState>();
     state.view = studio.capture->view();
     // Not when it is closed: the frame that is being drawn then shows them.
-    if (!shell.capture_open) state.textures.clear();
+    if (!state.open) state.textures.clear();
     const bool busy = is_busy(state.view);
-    if (std::exchange(state.was_busy, busy) && !busy) shell.results->show_instead(nullptr);
+    if (std::exchange(state.was_busy, busy) && !busy) show_instead(studio, {});
 }
 
-void show_capture(Shell& shell, bool shown) {
-    if (shown) show_nudge(shell, false);
-    shell.capture_open = shown;
-    CapturePanelState& state = *shell.studio.panels.capture;
+void show_capture(Studio& studio, bool shown) {
+    if (shown) show_panel(studio, "nudge", false);
+    CapturePanelState& state = studio.panels.of<CapturePanelState>();
+    state.open = shown;
     if (shown) {
         state.listed_at_s = -1.0;
         if (!std::exchange(state.sheets_read, true))
-            state.sheets = kept_data_sheets(shell.studio.settings);
-        if (state.chosen) choose(shell, *state.chosen);
+            state.sheets = kept_data_sheets(studio.settings);
+        if (state.chosen) choose(studio, *state.chosen);
     } else {
-        shell.studio.capture->close();
+        studio.capture->close();
     }
 }
 
-void draw_capture_panel(Shell& shell) {
-    list_what_there_is(shell);
-    CapturePanelState& state = *shell.studio.panels.capture;
+void draw_capture_panel(Studio& studio) {
+    list_cameras_now_and_then(studio);
+    CapturePanelState& state = studio.panels.of<CapturePanelState>();
     ImGui::PushFont(large_font());
     ImGui::TextUnformatted("Calibrate");
     ImGui::PopFont();
     ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - button_width("Close"));
     begin_disabled(is_busy(state.view));
     if (ImGui::Button("Close")) {
-        show_capture(shell, false);
+        show_capture(studio, false);
         end_disabled();
         return;
     }
     name_last_item("capture-close");
     end_disabled();
     dim_text("From cable to corrected picture, step by step.");
-    draw_cameras(shell);
+    draw_cameras(studio);
     if (!state.chosen) return;
-    const bool can_show = draw_projector(shell);
+    const bool can_show = draw_projector(studio);
     ImGui::Spacing();
-    draw_capture_steps(shell, can_show);
-    draw_camera_settings(shell);
+    draw_capture_steps(studio, can_show);
+    draw_camera_settings(studio);
+}
+
+namespace {
+
+const char* name_of(Doing doing) {
+    switch (doing) {
+        case Doing::nothing:
+            return "nothing";
+        case Doing::opening:
+            return "opening";
+        case Doing::watching:
+            return "watching";
+        case Doing::preflight:
+            return "preflight";
+        case Doing::fitting:
+            return "fitting";
+        case Doing::capturing:
+            return "capturing";
+        case Doing::checking:
+            return "checking";
+    }
+    return "nothing";
+}
+
+/// What the column tells of a trouble.
+std::string words_of(const CapturePanelState& capture) {
+    if (!capture.address_problem.empty()) return capture.address_problem;
+    return capture.view.why.empty() ? capture.view.wait.why : capture.view.why;
+}
+
+void describe_capture(const Studio& studio, MapState& state) {
+    const CapturePanelState& panel = studio.panels.of<CapturePanelState>();
+    const CaptureView& capture = panel.view;
+    state["capture"] = map_text(panel.open ? name_of(capture.doing) : "closed");
+    state["capture_paused"] = map_text(capture.paused);
+    state["capture_says"] = map_text(words_of(panel));
+    MapState preflight, steps;
+    for (const GradedFigure& figure : capture.step(CaptureStep::look).figures)
+        preflight[figure.name] = map_text(to_string(figure.grade));
+    state["preflight"] = map_text(preflight);
+    state["capture_stage"] = map_text(capture.stage);
+    state["capture_next"] = map_text(next_capture_step(capture));
+    for (const auto& [name, step] : named_capture_steps(capture))
+        if (step->done) steps[name] = map_text(to_string(grade_of(step->figures).grade));
+    state["capture_steps"] = map_text(steps);
+    state["capture_drift"] =
+        map_text(capture.drift.empty() ? "" : to_string(grade_of(capture.drift).grade));
+    state["capture_reposed"] = map_text(capture.reposed ? capture.reposed->string() : "");
+    state["capture_times"] = fmt::format(
+        "[{:.3f}, {:.3f}, {:.3f}]", capture.capture_s, capture.camera_s, capture.projector_s);
+}
+
+bool is_capture_open(const Studio& studio) { return studio.panels.of<CapturePanelState>().open; }
+
+}  // namespace
+
+Panel capture_panel() {
+    return {.name = "capture",
+            .place = PanelPlace::column,
+            .draw = draw_capture_panel,
+            .draw_stage = draw_capture_stage,
+            .is_open = is_capture_open,
+            .show = show_capture,
+            .step = take_capture,
+            .next_change_s =
+                [](const Studio& s) { return is_capture_open(s) ? s.now_s + kProgress_s : 0.0; },
+            .holds_picture = is_capture_open,
+            .describe = describe_capture,
+            .actions =
+                [] {
+                    return std::vector{
+                        panel_action("capture", "capture", "Projector", "Capture with a camera…")};
+                }};
 }
 
 }  // namespace livery

@@ -15,9 +15,10 @@
 
 namespace livery {
 
-struct Shell;
+struct Studio;
 
 struct CapturePanelState {
+    bool open = false;
     std::vector<ListedCamera> cameras;
     std::string problem;  ///< why they could not be listed
     double listed_at_s = -1.0;
@@ -40,14 +41,15 @@ struct CapturePanelState {
 
 /// Takes over what the capture's thread has: its pictures off the projector when it is done. Once a
 /// frame of the window.
-void take_capture(Shell& shell);
-/// Instead of the tabs, and instead of the stage, while `shell.capture_open`.
-void draw_capture_panel(Shell& shell);
-void draw_capture_stage(Shell& shell);
+void take_capture(Studio& studio);
+/// Instead of the tabs while it is open.
+void draw_capture_panel(Studio& studio);
+/// Instead of the stage; false: it is not open.
+bool draw_capture_stage(Studio& studio);
 /// The steps: what each found, and the button to the next.
-void draw_capture_steps(Shell& shell, bool can_show);
+void draw_capture_steps(Studio& studio, bool can_show);
 /// What the camera is opened for, by what the column says.
-CaptureSetup capture_setup(const Shell& shell, const CameraChoice& choice);
+CaptureSetup capture_setup(const Studio& studio, const CameraChoice& choice);
 /// "look", "geometry", "colour", "check": what is called for and not done; empty: nothing is.
 std::string next_capture_step(const CaptureView& view);
 /// All of them, by those names.
@@ -56,6 +58,6 @@ std::vector<std::pair<std::string, const CaptureStepView*>> named_capture_steps(
 /// Whether the capture's thread works for the calibration.
 bool is_busy(const CaptureView& view);
 /// Opens or closes both; the camera is let go with them.
-void show_capture(Shell& shell, bool shown);
+void show_capture(Studio& studio, bool shown);
 
 }  // namespace livery

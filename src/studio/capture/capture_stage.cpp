@@ -9,8 +9,7 @@
 #include "studio/capture/capture_panel.h"
 #include "studio/kit/theme.h"
 #include "studio/kit/widgets.h"
-#include "studio/window/imgui_window.h"
-#include "studio/window/shell.h"
+#include "studio/studio.h"
 
 namespace livery {
 
@@ -97,8 +96,8 @@ void draw_histogram(const CaptureHistogram& histogram, ImVec2 corner, ImVec2 box
                  text.c_str());
 }
 
-void draw_tiles(Shell& shell) {
-    CapturePanelState& state = *shell.studio.panels.capture;
+void draw_tiles(Studio& studio) {
+    CapturePanelState& state = studio.panels.of<CapturePanelState>();
     const CaptureView& view = state.view;
     const ImVec2 tile{em(8.0f), em(5.4f)};
     const float label = em(1.3f);
@@ -148,8 +147,8 @@ void draw_tiles(Shell& shell) {
 }
 
 /// The row over the tiles.
-void draw_tile_actions(Shell& shell) {
-    CapturePanelState& state = *shell.studio.panels.capture;
+void draw_tile_actions(Studio& studio) {
+    CapturePanelState& state = studio.panels.of<CapturePanelState>();
     const CaptureView& view = state.view;
     if (state.selected && *state.selected >= view.tiles.size()) state.selected.reset();
     dim_text(fmt::format(
@@ -158,7 +157,7 @@ void draw_tile_actions(Shell& shell) {
     ImGui::SameLine();
     const std::string label = fmt::format("Take {} again", view.tiles[*state.selected].of);
     if (ImGui::Button(label.c_str())) {
-        shell.studio.capture->take_again(*state.selected);
+        studio.capture->take_again(*state.selected);
         state.selected.reset();
     }
     name_last_item("take-again");
@@ -174,8 +173,9 @@ const CaptureStepView* newest_finding(const CaptureView& view) {
 
 }  // namespace
 
-void draw_capture_stage(Shell& shell) {
-    CapturePanelState& state = *shell.studio.panels.capture;
+bool draw_capture_stage(Studio& studio) {
+    CapturePanelState& state = studio.panels.of<CapturePanelState>();
+    if (!state.open) return false;
     const CaptureView& view = state.view;
     forget_textures(state);
     const ImVec2 space = ImGui::GetContentRegionAvail();
@@ -195,7 +195,7 @@ void draw_capture_stage(Shell& shell) {
             view.histogram, {corner.x, corner.y + upper + gap}, {space.x, em(6.0f) - gap});
         ImGui::Dummy(space);
         name_last_item("live-view");
-        return;
+        return true;
     }
     const float half = std::floor(0.5f * (space.x - gap));
     const bool capturing = view.doing == Doing::capturing;
@@ -229,8 +229,9 @@ void draw_capture_stage(Shell& shell) {
     draw_histogram(view.histogram, {right.x, corner.y + upper - lower}, {half, lower});
     ImGui::Dummy({space.x, upper});
     name_last_item("live-view");
-    draw_tile_actions(shell);
-    draw_tiles(shell);
+    draw_tile_actions(studio);
+    draw_tiles(studio);
+    return true;
 }
 
 }  // namespace livery

@@ -7,12 +7,12 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
-#include "studio/calibration_panel.h"
+#include "studio/calibrate/calibration_panel.h"
 #include "studio/capture/capture_panel.h"
 #include "studio/kit/theme.h"
 #include "studio/kit/widgets.h"
 #include "studio/kit/words.h"
-#include "studio/window/shell.h"
+#include "studio/studio.h"
 
 namespace livery {
 
@@ -60,9 +60,9 @@ std::string time_text(double seconds) {
                      "{:.0f} min {:02.0f} s", std::floor(seconds / 60.0), std::fmod(seconds, 60.0));
 }
 
-void draw_running(Shell& shell) {
-    CaptureThread& capture = *shell.studio.capture;
-    const CaptureView& view = shell.studio.panels.capture->view;
+void draw_running(Studio& studio) {
+    CaptureThread& capture = *studio.capture;
+    const CaptureView& view = studio.panels.of<CapturePanelState>().view;
     progress_bar(view.fraction, fmt::format("{:.0f} %", 100.0 * view.fraction));
     name_last_item("capture-progress");
     if (view.waits_for_next) {
@@ -113,9 +113,8 @@ bool is_accepted(const CapturePanelState& state) {
 }
 
 /// Into use, if it can be told where its projector stands.
-void accept(Shell& shell) {
-    Studio& studio = shell.studio;
-    CapturePanelState& state = *studio.panels.capture;
+void accept(Studio& studio) {
+    CapturePanelState& state = studio.panels.of<CapturePanelState>();
     state.before = studio.session.document().calibration;
     state.accepted = *state.view.finished;
     stop_trying(studio);
@@ -133,8 +132,8 @@ void draw_trouble(const CaptureView& view) {
         dim_text("The other photographs are kept. Choose one in the middle to take it again.");
 }
 
-void draw_effort(Shell& shell) {
-    CapturePanelState& state = *shell.studio.panels.capture;
+void draw_effort(Studio& studio) {
+    CapturePanelState& state = studio.panels.of<CapturePanelState>();
     struct Effort {
         const char* name;
         const char* item;
@@ -154,8 +153,8 @@ void draw_effort(Shell& shell) {
         if (ImGui::RadioButton(effort.name, state.colour_shots == effort.shots) &&
             state.colour_shots != effort.shots) {
             state.colour_shots = effort.shots;
-            CaptureSetup setup = capture_setup(shell, *state.chosen);
-            shell.studio.capture->use(std::move(setup));
+            CaptureSetup setup = capture_setup(studio, *state.chosen);
+            studio.capture->use(std::move(setup));
         }
         name_last_item(effort.item);
         tooltip(effort.meaning);
@@ -174,9 +173,9 @@ void draw_what_check_found(const CaptureView& view) {
 }
 
 /// The large button: the next step, or the end.
-void draw_next(Shell& shell, bool can_show) {
-    CaptureThread& capture = *shell.studio.capture;
-    const CapturePanelState& state = *shell.studio.panels.capture;
+void draw_next(Studio& studio, bool can_show) {
+    CaptureThread& capture = *studio.capture;
+    const CapturePanelState& state = studio.panels.of<CapturePanelState>();
     const CaptureView& view = state.view;
     const bool by_hand = state.chosen->kind == CameraChoice::Kind::folder;
     const bool ready =
@@ -198,7 +197,7 @@ void draw_next(Shell& shell, bool can_show) {
     }
     if (finished && !is_accepted(state)) {
         if (ImGui::Button("Accept: put it to use", next ? ImVec2{-FLT_MIN, 0.0f} : large))
-            accept(shell);
+            accept(studio);
         name_last_item("accept");
         tooltip("The calibration before is kept, and can be gone back to.");
         draw_what_check_found(view);
@@ -208,19 +207,19 @@ void draw_next(Shell& shell, bool can_show) {
         dim_text("This calibration is in use.");
         name_last_item("accepted");
         if (ImGui::Button("Back to the one before", {-FLT_MIN, 0.0f})) {
-            commit(shell.studio, SetCalibration{state.before.string()});
-            shell.studio.panels.capture->accepted.clear();
+            commit(studio, SetCalibration{state.before.string()});
+            studio.panels.of<CapturePanelState>().accepted.clear();
         }
         name_last_item("revert");
     }
 }
 
 /// What the bench is like against how the calibration in use left it.
-void draw_drift(Shell& shell, bool ready) {
-    const CaptureView& view = shell.studio.panels.capture->view;
-    if (shell.studio.session.document().calibration.empty() || !ready) return;
+void draw_drift(Studio& studio, bool ready) {
+    const CaptureView& view = studio.panels.of<CapturePanelState>().view;
+    if (studio.session.document().calibration.empty() || !ready) return;
     if (ImGui::Button("Has anything moved since?", {-FLT_MIN, 0.0f}))
-        shell.studio.capture->look_for_drift(shell.studio.session.document().calibration);
+        studio.capture->look_for_drift(studio.session.document().calibration);
     name_last_item("look-for-drift");
     tooltip("Two photographs, against those that ended the calibration in use.");
     if (view.drift.empty()) return;
@@ -236,9 +235,8 @@ void draw_drift(Shell& shell, bool ready) {
 }
 
 /// After a bump: the calibration in use, carried to where the mock-up stands now.
-void draw_find_again(Shell& shell, bool ready) {
-    Studio& studio = shell.studio;
-    const CaptureView& view = studio.panels.capture->view;
+void draw_find_again(Studio& studio, bool ready) {
+    const CaptureView& view = studio.panels.of<CapturePanelState>().view;
     const std::string& in_use = studio.session.document().calibration;
     if (in_use.empty() || !ready) return;
     if (ImGui::Button("Find the bumped mock-up again", {-FLT_MIN, 0.0f}))
@@ -259,8 +257,8 @@ void draw_find_again(Shell& shell, bool ready) {
     end_disabled();
 }
 
-void draw_step(Shell& shell, const StepWords& words, bool ready) {
-    CapturePanelState& state = *shell.studio.panels.capture;
+void draw_step(Studio& studio, const StepWords& words, bool ready) {
+    CapturePanelState& state = studio.panels.of<CapturePanelState>();
     const CaptureStepView& step = state.view.step(words.step);
     const bool now = is_busy(state.view) && state.view.doing_step == words.step;
     const OverallGrade grade = grade_of(step.figures);
@@ -296,13 +294,13 @@ void draw_step(Shell& shell, const StepWords& words, bool ready) {
         const float anew =
             step.can_go_on ? button_width("Anew") + ImGui::GetStyle().ItemSpacing.x : 0.0f;
         ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - button_width(label) - anew);
-        if (ImGui::SmallButton(label)) shell.studio.capture->start(words.step, step.done);
+        if (ImGui::SmallButton(label)) studio.capture->start(words.step, step.done);
         name_last_item(words.item);
         tooltip(step.done ? "Forgets what this step photographed, and what follows from it."
                           : "This step, and nothing after it.");
         if (step.can_go_on) {
             ImGui::SameLine();
-            if (ImGui::SmallButton("Anew")) shell.studio.capture->start(words.step, true);
+            if (ImGui::SmallButton("Anew")) studio.capture->start(words.step, true);
             name_last_item(std::string(words.item) + "-anew");
             tooltip("Forgets what was photographed.");
         }
@@ -337,25 +335,25 @@ std::vector<std::pair<std::string, const CaptureStepView*>> named_capture_steps(
     return steps;
 }
 
-void draw_capture_steps(Shell& shell, bool can_show) {
-    CapturePanelState& state = *shell.studio.panels.capture;
+void draw_capture_steps(Studio& studio, bool can_show) {
+    CapturePanelState& state = studio.panels.of<CapturePanelState>();
     const CaptureView& view = state.view;
     const bool by_hand = state.chosen->kind == CameraChoice::Kind::folder;
     const bool ready =
         can_show && view.doing != CaptureView::Doing::opening && (!view.camera.empty() || by_hand);
     if (is_busy(view)) {
-        draw_running(shell);
+        draw_running(studio);
     } else {
-        if (!by_hand) draw_effort(shell);
-        draw_next(shell, can_show);
+        if (!by_hand) draw_effort(studio);
+        draw_next(studio, can_show);
         draw_trouble(view);
         if (!view.finished || is_accepted(state)) {
-            draw_drift(shell, ready && !by_hand);
-            draw_find_again(shell, ready && !by_hand);
+            draw_drift(studio, ready && !by_hand);
+            draw_find_again(studio, ready && !by_hand);
         }
     }
     heading("Steps");
-    for (const StepWords& words : kSteps) draw_step(shell, words, ready);
+    for (const StepWords& words : kSteps) draw_step(studio, words, ready);
     if (!view.compared.empty()) {
         heading("Against the one in use");
         draw_figures(view.compared);
@@ -374,7 +372,7 @@ void draw_capture_steps(Shell& shell, bool can_show) {
     }
     if (!is_busy(view) && view.may_have_curve && ready) {
         if (ImGui::Button("Fit the camera's curve", {-FLT_MIN, 0.0f}))
-            shell.studio.capture->start_curve_fit();
+            studio.capture->start_curve_fit();
         name_last_item("fit-curve");
         tooltip(
             "For a camera that gives no RAW: photographs white at other exposures and finds what "

@@ -10,8 +10,8 @@
 #include "studio/kit/folders.h"
 #include "studio/kit/tab_order.h"
 #include "studio/kit/theme.h"
+#include "studio/kit/ui_map.h"
 #include "studio/kit/widgets.h"
-#include "studio/studio.h"
 
 namespace livery {
 

@@ -1,6 +1,7 @@
 #include "studio/kit/folders.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <cstdlib>
 #include <fstream>
@@ -27,6 +28,21 @@ bool has_suffix_of(const std::filesystem::path& file, const std::vector<std::str
     return suffixes.empty() ||
            std::find(suffixes.begin(), suffixes.end(), lower(file.extension().string())) !=
                suffixes.end();
+}
+
+std::string file_name_of(const std::string& name) {
+    std::string result;
+    for (const char c : name) {
+        const bool plain = static_cast<unsigned char>(c) >= 0x80 ||
+                           std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == '-';
+        if (plain) {
+            result += c;
+        } else if (!result.empty() && result.back() != '-') {
+            result += '-';
+        }
+    }
+    while (!result.empty() && result.back() == '-') result.pop_back();
+    return result.empty() ? "look" : result;
 }
 
 bool is_folder(const std::filesystem::path& path) {
@@ -107,9 +123,9 @@ bool open_folder(const std::filesystem::path& folder) {
     // The shell ends at once, so that the file manager is nobody's child to wait for.
     std::string script =
         R"(command -v xdg-open >/dev/null || exit 1; xdg-open "$1" </dev/null >/dev/null 2>&1 &)";
-    std::string shell = "sh", option = "-c", name = "sh", argument = folder.string();
+    std::string studio = "sh", option = "-c", name = "sh", argument = folder.string();
     char* words[] = {
-        shell.data(), option.data(), script.data(), name.data(), argument.data(), nullptr};
+        studio.data(), option.data(), script.data(), name.data(), argument.data(), nullptr};
     pid_t id = -1;
     if (::posix_spawnp(&id, "sh", nullptr, nullptr, words, ::environ) != 0) return false;
     int status = 0;

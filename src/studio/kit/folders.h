@@ -27,6 +27,9 @@ std::filesystem::path typed_path(const std::string& text, const std::filesystem:
 /// Whether the name ends in one of these, whatever the case; true when there are none.
 bool has_suffix_of(const std::filesystem::path& file, const std::vector<std::string>& suffixes);
 
+/// "Blue metallic / 2" -> "Blue-metallic-2": for file names.
+std::string file_name_of(const std::string& name);
+
 bool is_folder(const std::filesystem::path& path);
 
 /// Why a folder's content cannot be shown; empty: it can.

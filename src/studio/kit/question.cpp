@@ -6,8 +6,8 @@
 #include <imgui.h>
 
 #include "studio/kit/theme.h"
+#include "studio/kit/ui_map.h"
 #include "studio/kit/widgets.h"
-#include "studio/studio.h"
 
 namespace livery {
 

@@ -11,7 +11,6 @@
 #include "core/error.h"
 #include "core/json.h"
 #include "studio/kit/tab_order.h"
-#include "studio/studio.h"
 
 namespace livery {
 
@@ -56,6 +55,19 @@ void name_last_item(const std::string& name) {
     const float right = std::min(high.x, clip_high.x), bottom = std::min(high.y, clip_high.y);
     if (right - left >= 1.0f && bottom - top >= 1.0f)
         named[name] = place_of(left, top, right, bottom);
+}
+
+std::string map_text(bool value) { return value ? "true" : "false"; }
+std::string map_text(const std::string& value) { return Json(value).dump(); }
+std::string map_text(const char* value) { return map_text(std::string(value)); }
+std::string map_text(const std::optional<int>& value) {
+    return value ? std::to_string(*value) : "null";
+}
+
+std::string map_text(const MapState& object) {
+    Json json = Json::object();
+    for (const auto& [name, value] : object) json[name] = Json::parse(value);
+    return json.dump();
 }
 
 std::string ui_map_text(const ItemPlaces& items,

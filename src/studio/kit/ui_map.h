@@ -16,15 +16,25 @@ struct ItemPlace {
 };
 using ItemPlaces = std::map<std::string, ItemPlace>;
 
-/// name_last_item() (studio.h) adds to these between the two, and to the order of Tab
-/// (tab_order.h); main thread.
+/// name_last_item() adds to these between the two, and to the order of Tab (tab_order.h); main
+/// thread.
 void start_naming_items(bool wanted);
 ItemPlaces take_named_items();
+/// Remembers where the item just drawn is on the screen, under a name that does not depend on the
+/// layout ("paint:solid red", "look:2", "undo"): for `--ui-map FILE`, by which tests and other
+/// programs drive the window.
+void name_last_item(const std::string& name);
 /// For what is not one item: a rectangle of the screen.
 void name_rectangle(const std::string& name, float x, float y, float width, float height);
 
 /// What the window shows, as names and JSON values ("true", "3", "\"preview\"").
 using MapState = std::map<std::string, std::string>;
+std::string map_text(bool value);
+std::string map_text(const std::string& value);  ///< quoted
+std::string map_text(const char* value);
+std::string map_text(const std::optional<int>& value);  ///< or "null"
+std::string map_text(const MapState& object);
+
 std::string ui_map_text(const ItemPlaces& items,
                         const MapState& state,
                         const ItemPlace& window_on_desktop);

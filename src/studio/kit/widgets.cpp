@@ -11,9 +11,8 @@
 #include "core/colour.h"
 #include "core/spectrum.h"
 #include "studio/kit/theme.h"
+#include "studio/kit/ui_map.h"
 #include "studio/kit/words.h"
-#include "studio/paint/paint_parameters.h"
-#include "studio/studio.h"
 
 namespace livery {
 

@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "core/colour.h"
+
 namespace livery {
 
 namespace {
@@ -19,6 +21,13 @@ bool is_like(const std::string& text, std::string_view pattern) {
         if (pattern[i] == '0' ? !digit : text[i] != pattern[i]) return false;
     }
     return true;
+}
+
+int hex_digit(char c) {
+    if (c >= '0' && c <= '9') return c - '0';
+    if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+    if (c >= 'A' && c <= 'F') return c - 'A' + 10;
+    return -1;
 }
 
 }  // namespace
@@ -71,6 +80,39 @@ std::string readable_calibration(const std::string& folder_name) {
                        folder_name.substr(11, 2),
                        folder_name.substr(14, 2),
                        folder_name.substr(21));
+}
+
+bool in_srgb(const glm::dvec3& linear_rec709) {
+    for (int c = 0; c < 3; ++c) {
+        if (!(linear_rec709[c] >= 0.0 && linear_rec709[c] <= 1.0)) return false;
+    }
+    return true;
+}
+
+std::string hex_of(const glm::dvec3& linear_rec709) {
+    std::string text = "#";
+    for (int c = 0; c < 3; ++c) {
+        const double encoded = srgb_encode(std::clamp(linear_rec709[c], 0.0, 1.0));
+        text += fmt::format("{:02x}", static_cast<int>(std::lround(255.0 * encoded)));
+    }
+    return text;
+}
+
+std::optional<glm::dvec3> colour_of_hex(const std::string& text) {
+    std::string digits = text;
+    digits.erase(std::remove(digits.begin(), digits.end(), ' '), digits.end());
+    if (!digits.empty() && digits.front() == '#') digits.erase(0, 1);
+    if (digits.size() == 3) {
+        digits = {digits[0], digits[0], digits[1], digits[1], digits[2], digits[2]};
+    }
+    if (digits.size() != 6) return std::nullopt;
+    glm::dvec3 colour;
+    for (std::size_t c = 0; c < 3; ++c) {
+        const int high = hex_digit(digits[2 * c]), low = hex_digit(digits[2 * c + 1]);
+        if (high < 0 || low < 0) return std::nullopt;
+        colour[static_cast<int>(c)] = srgb_decode((16 * high + low) / 255.0);
+    }
+    return colour;
 }
 
 }  // namespace livery

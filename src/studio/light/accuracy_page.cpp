@@ -17,8 +17,6 @@
 #include "studio/kit/ui_map.h"
 #include "studio/kit/widgets.h"
 #include "studio/kit/words.h"
-#include "studio/light/lighting_panel.h"
-#include "studio/presenting/presenting.h"
 #include "studio/studio.h"
 
 namespace livery {
@@ -163,7 +161,7 @@ int draw_accuracy_chart(const std::vector<AccuracyLevel>& levels,
     return nearest;
 }
 
-AccuracyPage& page_of(const Studio& studio) { return studio.panels.lighting->accuracy; }
+AccuracyPage& page_of(const Studio& studio) { return studio.panels.of<AccuracyPage>(); }
 
 void show(AccuracyPage& page, std::shared_ptr<const AccuracyLedger> ledger, bool measured_here) {
     page.shown = std::move(ledger);
@@ -208,7 +206,7 @@ void draw_measuring(Studio& studio, const AccuracyThread::State& now) {
         progress_bar(now.fraction, now.doing);
         return;
     }
-    const bool presenting = is_presenting(studio);
+    const bool presenting = is_editing_locked(studio);
     begin_disabled(presenting);
     if (ImGui::Button("Measure on this machine")) {
         if (!page.thread) page.thread = std::make_unique<AccuracyThread>(wake_main_thread);
@@ -337,6 +335,24 @@ void draw_accuracy_page(Studio& studio) {
         draw_inside(studio);
     }
     ImGui::End();
+}
+
+Panel accuracy_panel() {
+    return {
+        .name = "accuracy",
+        .place = PanelPlace::page,
+        .draw = draw_accuracy_page,
+        .is_open = [](const Studio& s) { return page_of(s).open; },
+        .show = show_accuracy_page,
+        .stop = [](Studio& s) { page_of(s).thread.reset(); },
+        .esc_closes = true,
+        .next_change_s =
+            [](const Studio& s) { return is_measuring_accuracy(s) ? s.now_s + kProgress_s : 0.0; },
+        .actions =
+            [] {
+                return std::vector{line_above(
+                    panel_action("accuracy-page", "accuracy", "View", "What accuracy costs"))};
+            }};
 }
 
 }  // namespace livery

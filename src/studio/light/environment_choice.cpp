@@ -69,7 +69,7 @@ Image8 thumbnail_of(const Environment& environment) {
 }
 
 void ask_for_thumbnail(Studio& studio, const std::string& file) {
-    LightingPanelState& state = *studio.panels.lighting;
+    LightingPanelState& state = studio.panels.of<LightingPanelState>();
     if (state.thumbnail_of == file || !studio.background) return;
     state.thumbnail_of = file;
     state.thumbnail = {};
@@ -78,7 +78,7 @@ void ask_for_thumbnail(Studio& studio, const std::string& file) {
     const auto load = [&studio, file](const Progress&) -> Background::Then {
         const Image8 picture = thumbnail_of(load_environment({file, 0.0, 1.0}, {}));
         return [&studio, file, picture] {
-            LightingPanelState& panel = *studio.panels.lighting;
+            LightingPanelState& panel = studio.panels.of<LightingPanelState>();
             if (panel.thumbnail_of != file) return;
             Texture2D texture(TextureShape{picture.width, picture.height, 0, 1},
                               TexelFormat::rgba8,
@@ -89,11 +89,11 @@ void ask_for_thumbnail(Studio& studio, const std::string& file) {
         };
     };
     studio.background->run(load, [&studio, file](const std::exception_ptr& failure) {
-        if (studio.panels.lighting->thumbnail_of != file) return;
+        if (studio.panels.of<LightingPanelState>().thumbnail_of != file) return;
         try {
             std::rethrow_exception(failure);
         } catch (const std::exception& error) {
-            studio.panels.lighting->thumbnail_problem = error.what();
+            studio.panels.of<LightingPanelState>().thumbnail_problem = error.what();
         }
     });
 }
@@ -151,7 +151,7 @@ void ask_for_file(Studio& studio, const EnvironmentReference& environment) {
 }
 
 void draw_choice(Studio& studio, const EnvironmentReference& environment) {
-    LightingPanelState& state = *studio.panels.lighting;
+    LightingPanelState& state = studio.panels.of<LightingPanelState>();
     row_label("Environment");
     if (ImGui::BeginCombo("##environment", shown_name(environment.file).c_str())) {
         if (!std::exchange(state.listed, true)) {
@@ -195,7 +195,7 @@ void draw_environment_choice(Studio& studio,
                              EnvironmentReference& environment,
                              const std::function<void()>& after_item) {
     draw_choice(studio, environment);
-    LightingPanelState& state = *studio.panels.lighting;
+    LightingPanelState& state = studio.panels.of<LightingPanelState>();
     // It may have gone bad since it was chosen, and come back since.
     if (const auto problem = environment_problem(environment)) {
         state.thumbnail_of.clear();

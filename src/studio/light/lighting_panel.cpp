@@ -20,6 +20,7 @@
 #include "mesh/mesh.h"
 #include "scene/frame_plan.h"
 #include "scene/look.h"
+#include "studio/frame/quality_costs.h"
 #include "studio/kit/imgui_versions.h"
 #include "studio/kit/theme.h"
 #include "studio/kit/ui_map.h"
@@ -27,8 +28,7 @@
 #include "studio/light/environment_choice.h"
 #include "studio/light/light_values.h"
 #include "studio/light/quality_section.h"
-#include "studio/quality_costs.h"
-#include "studio/seats/seats_panel.h"
+#include "studio/light/reference_tracing.h"
 #include "studio/studio.h"
 #include "twin/description.h"
 
@@ -145,7 +145,7 @@ bool same_lighting(const Look& a, const Look& b) {
 }
 
 const glm::dvec3& product_centre(Studio& studio) {
-    LightingPanelState& state = *studio.panels.lighting;
+    LightingPanelState& state = studio.panels.of<LightingPanelState>();
     if (studio.product && state.centre_of != studio.product) {
         const Bounds bounds = bounds_of(studio.product->mesh);
         state.centre_mm = 0.5 * (bounds.low + bounds.high);
@@ -180,7 +180,7 @@ class LightRows {
     void after_item(const char* name, const std::string& meaning) {
         name_last_item(fmt::format("light:{}:{}", light_, name));
         tooltip(meaning);
-        studio_.panels.lighting->held.after_item();
+        studio_.panels.of<LightingPanelState>().held.after_item();
         edit_with_last_item(studio_, SetLights{studio_.shown_look, edited_.lights});
     }
 
@@ -262,7 +262,7 @@ void draw_lights(Studio& studio, Look& edited, const Look& before) {
     const glm::dvec3 toward_eye = eye_in_use_mm(studio.session.document()) - product_centre(studio);
     const float side = std::min(em(9.5f), ImGui::GetContentRegionAvail().x);
     light_pad(edited.lights, toward_eye, side, [&] {
-        studio.panels.lighting->held.after_item();
+        studio.panels.of<LightingPanelState>().held.after_item();
         edit_with_last_item(studio, SetLights{studio.shown_look, edited.lights});
     });
     ImGui::SameLine();
@@ -305,7 +305,7 @@ void draw_sharing(Studio& studio, const Look& look) {
 
 void draw_eye_angles(Studio& studio, glm::dvec3& eye_mm) {
     const glm::dvec3 centre = product_centre(studio);
-    Held<glm::dvec3>& held = studio.panels.lighting->held_eye_mm;
+    Held<glm::dvec3>& held = studio.panels.of<LightingPanelState>().held_eye_mm;
     const auto row = [&](const char* label, const char* name, const char* meaning, auto change) {
         Polar polar = polar_of(eye_mm, centre);
         row_label(label);
@@ -337,7 +337,7 @@ void draw_eye_angles(Studio& studio, glm::dvec3& eye_mm) {
 
 /// Read once a bench: a panel is drawn sixty times a second.
 std::optional<glm::dvec3> observer_mm(Studio& studio) {
-    LightingPanelState& state = *studio.panels.lighting;
+    LightingPanelState& state = studio.panels.of<LightingPanelState>();
     const std::string& bench = studio.session.document().bench;
     if (state.observer_of == bench) return state.observer_mm;
     state.observer_of = bench;
@@ -365,7 +365,7 @@ void draw_eye_at_observer(Studio& studio) {
 }
 
 void draw_eye(Studio& studio) {
-    LightingPanelState& state = *studio.panels.lighting;
+    LightingPanelState& state = studio.panels.of<LightingPanelState>();
     heading("Eye");
     tooltip(
         "Where the audience looks from: highlights sit where this eye sees them, and the "
@@ -375,7 +375,7 @@ void draw_eye(Studio& studio) {
     draw_eye_angles(studio, eye_mm);
     state.held_eye_mm.finish();
     draw_eye_at_observer(studio);
-    if (ImGui::Button("Seats in the room…")) studio.panels.seats->wanted = true;
+    if (ImGui::Button("Seats in the room…")) show_panel(studio, "seats");
     name_last_item("open-seats");
     tooltip("Where people sit in a plan of the room, whose eye this is, and what others miss.");
     const Document& document = studio.session.document();
@@ -388,7 +388,7 @@ void draw_eye(Studio& studio) {
 }
 
 void draw_exposure(Studio& studio) {
-    LightingPanelState& state = *studio.panels.lighting;
+    LightingPanelState& state = studio.panels.of<LightingPanelState>();
     heading("Exposure");
     double& ev = state.held_ev.start(studio.session.document().exposure_ev);
     row_label("Exposure");
@@ -403,7 +403,7 @@ void draw_exposure(Studio& studio) {
 }  // namespace
 
 void draw_lighting_panel(Studio& studio) {
-    LightingPanelState& state = *studio.panels.lighting;
+    LightingPanelState& state = studio.panels.of<LightingPanelState>();
     const SessionLook* shown = find_look(studio.session.document(), studio.shown_look);
     if (!shown) {
         dim_text("There is no look to light.");
@@ -431,6 +431,17 @@ void draw_lighting_panel(Studio& studio) {
     draw_exposure(studio);
     ImGui::Spacing();
     draw_quality_section(studio);
+}
+
+Panel lighting_panel() {
+    return {.name = "Light",
+            .place = PanelPlace::tab,
+            .draw = draw_lighting_panel,
+            .step = take_traced,
+            .stop = [](Studio& s) { s.panels.of<ReferenceTracing>().thread.reset(); },
+            .next_change_s =
+                [](const Studio& s) { return is_tracing(s) ? s.now_s + kProgress_s : 0.0; },
+            .holds_picture = is_tracing};
 }
 
 }  // namespace livery

@@ -11,8 +11,6 @@
 #include "scene/look.h"
 #include "scene/product.h"
 #include "studio/kit/widgets.h"
-#include "studio/light/accuracy_page.h"
-#include "studio/light/reference_tracing.h"
 
 namespace livery {
 
@@ -32,8 +30,6 @@ struct LightingPanelState {
     bool listed = false;
     double budget_s = 0.0;       ///< 0: not moved yet
     std::string budget_problem;  ///< why no levels fit it
-    ReferenceTracing reference;
-    AccuracyPage accuracy;
 };
 
 }  // namespace livery

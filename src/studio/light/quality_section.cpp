@@ -8,16 +8,16 @@
 #include <imgui.h>
 
 #include "core/error.h"
+#include "studio/drawing.h"
+#include "studio/frame/plan_panel.h"
+#include "studio/frame/quality_costs.h"
 #include "studio/kit/theme.h"
 #include "studio/kit/ui_map.h"
 #include "studio/kit/widgets.h"
 #include "studio/kit/words.h"
 #include "studio/light/lighting_panel.h"
 #include "studio/light/reference_tracing.h"
-#include "studio/plan_panel.h"
-#include "studio/quality_costs.h"
 #include "studio/studio.h"
-#include "studio/window/refinement.h"
 
 namespace livery {
 
@@ -62,7 +62,7 @@ void choose(Studio& studio, const EffectLevels& levels) {
 }
 
 void draw_budget(Studio& studio, const PricedFrame& frame) {
-    LightingPanelState& state = *studio.panels.lighting;
+    LightingPanelState& state = studio.panels.of<LightingPanelState>();
     if (!(state.budget_s > 0.0)) state.budget_s = 1e-3 * frame.time.all_ms;
     row_label("First frame in");
     ratio_slider("##budget", state.budget_s, kLeast_s, kMost_s, "%.2f s");
@@ -151,7 +151,7 @@ void draw_effect(Studio& studio, const PricedFrame& frame, const EffectPrice& pr
 
 /// Of the levels in the document, for the frame on the mock-up; kept until either changes.
 const PricedFrame* priced_frame(Studio& studio) {
-    PlanPanelState& state = *studio.panels.plan;
+    PlanPanelState& state = studio.panels.of<PlanPanelState>();
     const Document& document = studio.session.document();
     if (!studio.frame || (document.quality == Quality::reference && !document.levels)) {
         return nullptr;
@@ -176,7 +176,7 @@ void draw_quality_section(Studio& studio) {
     const PricedFrame* frame = priced_frame(studio);
     if (!frame) return;
     draw_budget(studio, *frame);
-    if (ImGui::Button("What accuracy costs…")) show_accuracy_page(studio, true);
+    if (ImGui::Button("What accuracy costs…")) show_panel(studio, "accuracy");
     name_last_item("accuracy");
     const bool open = section_header("Effects, their price and what they leave###effects");
     name_last_item("effects");

@@ -12,10 +12,8 @@
 #include "studio/kit/theme.h"
 #include "studio/kit/widgets.h"
 #include "studio/kit/words.h"
-#include "studio/light/lighting_panel.h"
-#include "studio/presenting/presenting.h"
-#include "studio/results.h"
-#include "studio/window/shell.h"
+#include "studio/projector.h"
+#include "studio/studio.h"
 
 namespace livery {
 
@@ -23,7 +21,7 @@ namespace {
 
 constexpr double kFade_s = 0.6;
 
-ReferenceTracing& tracing(const Studio& studio) { return studio.panels.lighting->reference; }
+ReferenceTracing& tracing(const Studio& studio) { return studio.panels.of<ReferenceTracing>(); }
 
 FramePicture<Image8> with_texture(TexturePool& textures, std::shared_ptr<const Image8> drive) {
     Image8 rgba(drive->width, drive->height, 4, 255);
@@ -77,7 +75,7 @@ std::string why_not_traced(const Studio& studio) {
     if (!studio.frame || !studio.setup) return "There is no picture on the mock-up yet.";
     if (!studio.frame->unfinished.empty()) return "Its light is still being solved.";
     if (studio.wiping) return "Two looks are shown beside one another.";
-    if (is_presenting(studio)) return "A vote is presented.";
+    if (is_editing_locked(studio)) return "A vote is presented.";
     return "";
 }
 
@@ -88,7 +86,7 @@ void trace_reference_of(Studio& studio) {
     ReferenceTracing& state = tracing(studio);
     if (!state.thread) state.thread = std::make_unique<ReferenceThread>(wake_main_thread);
     TraceRequest request;
-    request.number = studio.frame->number;
+    request.number = state.asked = studio.frame->number;
     request.scene = studio.frame->scene;
     request.setup = studio.setup;
     state.thread->trace(std::move(request));
@@ -99,37 +97,29 @@ bool is_tracing(const Studio& studio) {
     return state.thread && state.thread->state().running;
 }
 
-bool shows_reference(const Studio& studio) {
-    return studio.frame && studio.frame->plan.quality == Quality::reference &&
-           find_pass(studio.frame->plan, PassKind::path_tracer);
-}
-
-void stop_tracing(Studio& studio) {
-    if (tracing(studio).thread) tracing(studio).thread->stop();
-}
-
-void take_traced(Shell& shell) {
-    Studio& studio = shell.studio;
+void take_traced(Studio& studio) {
     ReferenceTracing& state = tracing(studio);
     if (!state.thread) return;
+    // Something else is to be shown
+    if (state.asked != studio.frame_number) state.thread->stop();
     const auto newest = state.thread->state().newest;
     if (!newest || newest == state.taken) return;
     state.taken = newest;
     // Of something that was shown before
-    if (!studio.frame || newest->number != shell.frame_number ||
+    if (!studio.frame || newest->number != studio.frame_number ||
         newest->number != studio.frame->number) {
         return;
     }
     if (!state.textures) state.textures = std::make_unique<TexturePool>(TexelFormat::rgba8);
-    shell.results->take(frame_of(*newest, *studio.frame, *state.textures));
-    studio.frame = shell.results->newest_drawn();
+    studio.results->take(frame_of(*newest, *studio.frame, *state.textures));
+    studio.frame = studio.results->newest_drawn();
 }
 
 void draw_reference_row(Studio& studio) {
     const ReferenceTracing& state = tracing(studio);
     const auto now = state.thread ? state.thread->state() : ReferenceThread::State();
     if (now.running) {
-        if (ImGui::Button("Stop")) stop_tracing(studio);
+        if (ImGui::Button("Stop")) state.thread->stop();
         name_last_item("reference:stop");
         ImGui::SameLine();
         progress_bar(now.fraction, fmt::format("Reference, to within {:.0f}%", 100.0 * now.error));

@@ -10,11 +10,11 @@
 
 namespace livery {
 
-struct Shell;
 struct Studio;
 
 struct ReferenceTracing {
     std::unique_ptr<ReferenceThread> thread;  ///< none: nobody asked yet
+    std::uint64_t asked = 0;                  ///< the frame that is traced
     std::shared_ptr<const TracedFrame> taken;
     std::unique_ptr<TexturePool> textures;  ///< of the window's context
 };
@@ -24,13 +24,10 @@ std::string why_not_traced(const Studio& studio);
 /// Of the frame on the mock-up. Throws Refused when it cannot be.
 void trace_reference_of(Studio& studio);
 bool is_tracing(const Studio& studio);
-/// What is on the mock-up was traced.
-bool shows_reference(const Studio& studio);
 
-/// Something else is to be shown.
-void stop_tracing(Studio& studio);
-/// A new picture to the projector, once a frame of the window.
-void take_traced(Shell& shell);
+/// A new picture to the projector, once a frame of the window; ended where something else is to be
+/// shown.
+void take_traced(Studio& studio);
 
 void draw_reference_row(Studio& studio);
 

@@ -23,8 +23,8 @@
 #include "studio/paint/paint_parameters.h"
 #include "studio/paint/parts_panel.h"
 #include "studio/paint/swatches.h"
-#include "studio/paint/users_library.h"
 #include "studio/studio.h"
+#include "studio/users_library.h"
 
 namespace livery {
 
@@ -70,10 +70,10 @@ Target target_of(const Studio& studio) {
     const auto& parts = studio.product->mesh.parts;
     const auto& painted = look->look.parts;
     const auto rest = painted.find("*");
-    if (studio.panels.library->target == LibraryPanelState::Target::product) {
+    if (studio.paint_target == PaintTarget::product) {
         target = {"*", "every part", "", true};
         if (rest != painted.end() && painted.size() == 1) target.paint = rest->second;
-    } else if (studio.panels.library->target == LibraryPanelState::Target::rest) {
+    } else if (studio.paint_target == PaintTarget::rest) {
         target = {"*", "every part without a paint of its own", ""};
         if (rest != painted.end()) target.paint = rest->second;
     } else if (const auto part = chosen_part(studio)) {
@@ -229,22 +229,20 @@ void draw_families(LibraryPanelState& state, const std::vector<Section>& section
 }
 
 void draw_target(Studio& studio, const Target& target) {
-    LibraryPanelState& state = *studio.panels.library;
     ImGui::AlignTextToFramePadding();
     ImGui::PushTextWrapPos(0.0f);
     ImGui::Text("Painting: %s", target.label.c_str());
     ImGui::PopTextWrapPos();
     tooltip("What a click paints. Choose another part on the product or in the list.");
-    using enum LibraryPanelState::Target;
-    const auto offer = [&](const char* label,
-                           const char* name,
-                           LibraryPanelState::Target one,
-                           const char* meaning) {
-        place_in_row(button_width(label));
-        if (chip(label, state.target == one)) state.target = state.target == one ? part : one;
-        name_last_item(name);
-        tooltip(meaning);
-    };
+    using enum PaintTarget;
+    PaintTarget& chosen = studio.paint_target;
+    const auto offer =
+        [&](const char* label, const char* name, PaintTarget one, const char* meaning) {
+            place_in_row(button_width(label));
+            if (chip(label, chosen == one)) chosen = chosen == one ? part : one;
+            name_last_item(name);
+            tooltip(meaning);
+        };
     offer("Whole product",
           "paint-target:product",
           product,
@@ -255,14 +253,14 @@ void draw_target(Studio& studio, const Target& target) {
               "paint-target:rest",
               rest,
               "Paints every part of this look that has no paint of its own.");
-    } else if (state.target == rest) {
-        state.target = part;
+    } else if (chosen == rest) {
+        chosen = part;
     }
 }
 
 /// One swatch; true when it was clicked.
 bool draw_cell(Studio& studio, const Target& target, SwatchCell& cell, float width, float height) {
-    LibraryPanelState& state = *studio.panels.library;
+    LibraryPanelState& state = studio.panels.of<LibraryPanelState>();
     const Material& paint = *cell.paint;
     const ImVec2 corner = ImGui::GetCursorScreenPos();
     cell.centre = {corner.x + 0.5f * width, corner.y + 0.5f * height};
@@ -335,7 +333,7 @@ std::optional<std::size_t> neighbour(const std::vector<SwatchCell>& cells,
 }
 
 void follow_keys(Studio& studio, const Target& target, const std::vector<SwatchCell>& cells) {
-    LibraryPanelState& state = *studio.panels.library;
+    LibraryPanelState& state = studio.panels.of<LibraryPanelState>();
     if (!state.owns_arrows && !state.searching) return;
     std::optional<std::size_t> at;
     for (std::size_t i = 0; i < cells.size(); ++i) {
@@ -397,7 +395,7 @@ void draw_grid(Studio& studio,
                             {}};
             if (draw_cell(studio, target, cell, width, height)) clicked = cell.paint->name;
             const bool worn = same_paint_name(cell.paint->name, target.paint);
-            const auto& cursor = studio.panels.library->cursor;
+            const auto& cursor = studio.panels.of<LibraryPanelState>().cursor;
             if (cursor ? *cursor == cell.paint->name : worn) current = ImGui::GetItemID();
             cells.push_back(cell);
         }
@@ -408,7 +406,7 @@ void draw_grid(Studio& studio,
     end_tab_group(current);
     follow_keys(studio, target, cells);
     if (clicked) {
-        studio.panels.library->cursor = clicked;
+        studio.panels.of<LibraryPanelState>().cursor = clicked;
         commit(studio, paint_command(studio, target, *clicked));
     }
 }
@@ -441,10 +439,11 @@ void draw_nothing_found(LibraryPanelState& state, const PaintLibrary& library) {
 }  // namespace
 
 void draw_library_panel(Studio& studio) {
-    LibraryPanelState& state = *studio.panels.library;
+    LibraryPanelState& state = studio.panels.of<LibraryPanelState>();
     const PaintLibrary& library = current_library(studio);
-    if (!state.problem.empty()) {
-        warning_text("The paint library cannot be read anew. " + state.problem);
+    const LibraryReadings& readings = studio.panels.of<LibraryReadings>();
+    if (!readings.problem.empty()) {
+        warning_text("The paint library cannot be read anew. " + readings.problem);
     }
     const std::vector<Material>& own = studio.session.document().paints;
     std::vector<Section> sections{{"This session's own", &own, {}},
@@ -464,13 +463,14 @@ void draw_library_panel(Studio& studio) {
     }
     draw_target(studio, target);
     for (const std::string& problem : library.problems) warning_text("Left out: " + problem);
-    for (const auto& file : state.reading.files) {
+    for (const auto& file : readings.now.files) {
         dim_text("Reading " + file.filename().string() + "…");
     }
 
     const float height = std::max(ImGui::GetContentRegionAvail().y, em(12.0f));
     ImGui::BeginChild("swatches", {0.0f, height}, false, ImGuiWindowFlags_NoNavInputs);
     state.owns_arrows = found_any && ImGui::IsWindowFocused() && !state.searching;
+    if (state.owns_arrows) studio.arrows_taken_in_frame = ImGui::GetFrameCount();
     const ImVec2 corner = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
     name_rectangle("swatches", corner.x, corner.y, size.x, size.y);
     if (found_any) {
@@ -479,6 +479,29 @@ void draw_library_panel(Studio& studio) {
         draw_nothing_found(state, library);
     }
     ImGui::EndChild();
+}
+
+namespace {
+
+std::vector<Action> library_actions() {
+    return {{"find-paint",
+             "Edit",
+             "Find a paint",
+             {key(GLFW_KEY_SLASH), ctrl(GLFW_KEY_K)},
+             [](Studio& s) {
+                 s.tab_to_open = "Paints";
+                 s.panels.of<LibraryPanelState>().focus_search = true;
+             }}};
+}
+
+}  // namespace
+
+Panel library_panel() {
+    return {.name = "Paints",
+            .place = PanelPlace::tab,
+            .draw = draw_library_panel,
+            .step = take_swatches,
+            .actions = library_actions};
 }
 
 }  // namespace livery

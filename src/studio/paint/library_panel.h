@@ -10,19 +10,14 @@
 
 #include "gl/handles.h"
 #include "studio/paint/swatches.h"
-#include "studio/paint/users_library.h"
 
 namespace livery {
 
 struct LibraryPanelState {
-    std::string problem;                   ///< why its files could not be looked at; else empty
-    LibraryReading reading, next_reading;  ///< on the background thread, and after it
     std::string search;
-    bool searching = false;     ///< the text cursor is in the search
-    bool focus_search = false;  ///< set by a key: the next frame puts the text cursor there
-    std::string family;         ///< empty: all
-    enum class Target { part, rest, product };
-    Target target = Target::part;       ///< what a click paints
+    bool searching = false;             ///< the text cursor is in the search
+    bool focus_search = false;          ///< set by a key: the next frame puts the text cursor there
+    std::string family;                 ///< empty: all
     std::optional<std::string> cursor;  ///< the paint that the arrow keys are on
     bool cursor_moved = false;          ///< it must be scrolled to
     int cursor_rows = 0;                ///< up or down, pressed in the search in this frame

@@ -6,7 +6,7 @@
 
 #include "studio/kit/theme.h"
 #include "studio/paint/swatches.h"
-#include "studio/paint/users_library.h"
+#include "studio/users_library.h"
 
 namespace livery {
 

@@ -14,7 +14,7 @@
 #include "studio/kit/widgets.h"
 #include "studio/paint/paint_panel.h"
 #include "studio/paint/paint_parameters.h"
-#include "studio/paint/users_library.h"
+#include "studio/users_library.h"
 
 namespace livery {
 
@@ -38,12 +38,12 @@ const Recoloured& recoloured(PaintColourState& state, const Material& paint, glm
 }
 
 EditPaint edit_of(const Studio& studio, const Recoloured& made) {
-    const PaintPanelState& panel = *studio.panels.paint;
+    const PaintPanelState& panel = studio.panels.of<PaintPanelState>();
     return {panel.look, panel.part_name, made.material};
 }
 
 void draw_typed(Studio& studio, const Material& paint) {
-    PaintColourState& state = studio.panels.paint->colour;
+    PaintColourState& state = studio.panels.of<PaintPanelState>().colour;
     row_label("Colour at 45°");
     const glm::dvec3 face = drawn_face_lab(paint);
     const std::string its_own = fmt::format("lab:{:.1f},{:.1f},{:.1f}", face.x, face.y, face.z);
@@ -105,7 +105,8 @@ void ask_for_chips(Studio& studio) {
                              false,
                              {},
                              [&studio](const auto& file) {
-                                 PaintColourState& state = studio.panels.paint->colour;
+                                 PaintColourState& state =
+                                     studio.panels.of<PaintPanelState>().colour;
                                  try {
                                      state.chips = read_colour_chips(file);
                                      state.chips_file = file.filename().string();
@@ -120,7 +121,7 @@ void ask_for_chips(Studio& studio) {
 }
 
 void draw_chips(Studio& studio, const Material& paint) {
-    PaintColourState& state = studio.panels.paint->colour;
+    PaintColourState& state = studio.panels.of<PaintPanelState>().colour;
     row_label("Colour chips");
     ImGui::SetNextItemWidth(-1.0f);
     const std::string shown = state.chips.empty()
@@ -162,7 +163,7 @@ void draw_chips(Studio& studio, const Material& paint) {
 void draw_paint_colour_row(Studio& studio, const Material& paint) {
     if (is_measured(paint) || is_translucent(paint)) return;  // their colour is no parameter
     draw_typed(studio, paint);
-    if (!studio.panels.paint->colour.typing) draw_asked_for(paint);
+    if (!studio.panels.of<PaintPanelState>().colour.typing) draw_asked_for(paint);
     draw_chips(studio, paint);
 }
 

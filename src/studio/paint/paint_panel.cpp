@@ -25,8 +25,8 @@
 #include "studio/paint/paint_portrait.h"
 #include "studio/paint/parts_panel.h"
 #include "studio/paint/translucent_rows.h"
-#include "studio/paint/users_library.h"
 #include "studio/studio.h"
+#include "studio/users_library.h"
 
 namespace livery {
 
@@ -48,7 +48,7 @@ std::string name_after_edit(const Document& document, const EditPaint& edit) {
 
 /// Looks the paint up again when the document or the choice has changed.
 void refresh(Studio& studio) {
-    PaintPanelState& state = *studio.panels.paint;
+    PaintPanelState& state = studio.panels.of<PaintPanelState>();
     const auto chosen = chosen_part(studio);
     const int part = chosen ? static_cast<int>(*chosen) : -1;
     const bool same = state.read && state.revision == studio.session.revision() &&
@@ -106,7 +106,7 @@ class ParameterRows {
         after_named_item();
     }
     void after_named_item() {
-        PaintPanelState& state = *studio_.panels.paint;
+        PaintPanelState& state = studio_.panels.of<PaintPanelState>();
         state.held.after_item();
         const bool touched = last_item_is_held() || ImGui::IsItemDeactivatedAfterEdit();
         if (!touched) return;
@@ -124,13 +124,13 @@ class ParameterRows {
 };
 
 void commit_edit(Studio& studio, const Material& material) {
-    const PaintPanelState& state = *studio.panels.paint;
+    const PaintPanelState& state = studio.panels.of<PaintPanelState>();
     commit(studio, EditPaint{state.look, state.part_name, material});
 }
 
 /// Where the paint comes from, and what becomes of it when it is changed.
 void draw_origin(Studio& studio) {
-    const PaintPanelState& state = *studio.panels.paint;
+    const PaintPanelState& state = studio.panels.of<PaintPanelState>();
     const Material& material = *state.material;
     const bool own = is_own(studio.session.document(), material.name);
     std::string origin = own ? "This session's own paint" : "From the library";
@@ -151,7 +151,7 @@ void draw_origin(Studio& studio) {
 }
 
 void draw_model(Studio& studio, const Material& material) {
-    PaintPanelState& state = *studio.panels.paint;
+    PaintPanelState& state = studio.panels.of<PaintPanelState>();
     row_label("Model");
     const ModelInfo& chosen = model_info(material.model);
     if (ImGui::BeginCombo("##model", chosen.label)) {
@@ -192,7 +192,7 @@ void draw_pair(Studio& studio,
                ParameterRows& rows,
                const ParameterInfo& parameter,
                Material& edited) {
-    PaintPanelState& state = *studio.panels.paint;
+    PaintPanelState& state = studio.panels.of<PaintPanelState>();
     const Components<double> components = parameter.in_material(edited);
     double& along = *components[0];
     double& across = *components[1];
@@ -223,7 +223,7 @@ void draw_pair(Studio& studio,
 }
 
 void draw_parameters(Studio& studio) {
-    PaintPanelState& state = *studio.panels.paint;
+    PaintPanelState& state = studio.panels.of<PaintPanelState>();
     Material& edited = state.held.start(*state.material);
     ParameterRows rows(studio, edited);
     if (is_translucent(edited)) {
@@ -257,7 +257,7 @@ void draw_parameters(Studio& studio) {
 }
 
 void save_paint(Studio& studio) {
-    PaintPanelState& state = *studio.panels.paint;
+    PaintPanelState& state = studio.panels.of<PaintPanelState>();
     Material paint = *state.material;
     paint.name = state.new_name;
     paint.family = state.new_family;
@@ -289,7 +289,7 @@ void save_paint(Studio& studio) {
 }
 
 void draw_save_popup(Studio& studio) {
-    PaintPanelState& state = *studio.panels.paint;
+    PaintPanelState& state = studio.panels.of<PaintPanelState>();
     ImGui::SetNextWindowSize({em(24.0f), 0.0f});
     if (!ImGui::BeginPopupModal(
             kSavePopup, nullptr, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove)) {
@@ -320,7 +320,7 @@ void draw_save_popup(Studio& studio) {
 }
 
 void draw_rename_popup(Studio& studio) {
-    PaintPanelState& state = *studio.panels.paint;
+    PaintPanelState& state = studio.panels.of<PaintPanelState>();
     ImGui::SetNextWindowSize({em(24.0f), 0.0f});
     if (!ImGui::BeginPopupModal(
             kRenamePopup, nullptr, ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoMove)) {
@@ -354,7 +354,7 @@ void draw_rename_popup(Studio& studio) {
 }
 
 void draw_rename(Studio& studio) {
-    PaintPanelState& state = *studio.panels.paint;
+    PaintPanelState& state = studio.panels.of<PaintPanelState>();
     const char* rename = "Rename…";
     place_in_row(button_width(rename));
     begin_disabled(!is_own(studio.session.document(), state.material->name));
@@ -370,7 +370,7 @@ void draw_rename(Studio& studio) {
 }
 
 void draw_actions(Studio& studio) {
-    PaintPanelState& state = *studio.panels.paint;
+    PaintPanelState& state = studio.panels.of<PaintPanelState>();
     const Material& material = *state.material;
     const Material* origin = is_own(studio.session.document(), material.name)
                                  ? library_origin(material.name, current_library(studio))
@@ -410,7 +410,7 @@ void draw_actions(Studio& studio) {
 }  // namespace
 
 void draw_paint_panel(Studio& studio) {
-    PaintPanelState& state = *studio.panels.paint;
+    PaintPanelState& state = studio.panels.of<PaintPanelState>();
     refresh(studio);
     if (state.part_name.empty()) {
         dim_text("There is no part whose paint could be shown.");
@@ -447,6 +447,10 @@ void draw_paint_panel(Studio& studio) {
     ImGui::Spacing();
     draw_actions(studio);
     if (apart) ImGui::EndChild();
+}
+
+Panel paint_panel() {
+    return {.name = "Paint", .place = PanelPlace::tab, .draw = draw_paint_panel};
 }
 
 }  // namespace livery

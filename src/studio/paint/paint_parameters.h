@@ -21,12 +21,6 @@ std::string summary_of(const Material& material);
 /// Why a paint cannot be drawn (a colour outside the working space); nothing when it can.
 std::optional<std::string> paint_problem(const Material& material);
 
-/// "#a0b1c2" of linear Rec.709; channels outside [0, 1] are clipped (in_srgb() tells).
-std::string hex_of(const glm::dvec3& linear_rec709);
-bool in_srgb(const glm::dvec3& linear_rec709);
-/// Linear Rec.709 of "#a0b1c2", "a0b1c2" or "#abc"; nothing when it is none of these.
-std::optional<glm::dvec3> colour_of_hex(const std::string& text);
-
 /// The library's paint that a session's own began as: "solid red 2" -> "solid red". Null: none.
 const Material* library_origin(const std::string& name, const PaintLibrary& library);
 

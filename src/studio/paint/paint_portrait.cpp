@@ -26,7 +26,9 @@ namespace livery {
 
 namespace {
 
-PaintPortraitState& state_of(Studio& studio) { return studio.panels.paint->portrait; }
+PaintPortraitState& state_of(Studio& studio) {
+    return studio.panels.of<PaintPanelState>().portrait;
+}
 
 PaintPortrait portrait_of(const Material& material, double light_rad) {
     return {material, paint_figures(material), lobe_curve(material, light_rad)};

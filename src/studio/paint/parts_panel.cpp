@@ -71,4 +71,8 @@ void draw_parts_panel(Studio& studio) {
     }
 }
 
+Panel parts_panel() {
+    return {.name = "parts", .place = PanelPlace::left, .draw = draw_parts_panel};
+}
+
 }  // namespace livery

@@ -14,7 +14,7 @@
 #include "studio/kit/widgets.h"
 #include "studio/paint/library_panel.h"
 #include "studio/paint/paint_parameters.h"
-#include "studio/paint/users_library.h"
+#include "studio/users_library.h"
 
 namespace livery {
 
@@ -38,7 +38,7 @@ void draw_plain_disc(const Material& material, const ImVec2& corner, float side)
 }  // namespace
 
 void take_swatches(Studio& studio) {
-    LibraryPanelState& state = *studio.panels.library;
+    LibraryPanelState& state = studio.panels.of<LibraryPanelState>();
     std::map<std::string, Image8> drawn;
     {
         const std::scoped_lock lock(state.inbox->mutex);
@@ -60,7 +60,7 @@ void take_swatches(Studio& studio) {
 }
 
 void draw_swatch(Studio& studio, const Material& material, const ImVec2& corner, float side_px) {
-    LibraryPanelState& state = *studio.panels.library;
+    LibraryPanelState& state = studio.panels.of<LibraryPanelState>();
     // Few sizes, so that dragging a panel's edge does not draw all of them anew.
     const int size_px = std::clamp(static_cast<int>(std::ceil(side_px / 32.0f)) * 32, 64, 256);
     const std::string key = key_of(material, size_px);

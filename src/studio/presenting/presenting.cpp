@@ -79,8 +79,10 @@ std::string repeat_in_words(const BallotStore& ballots, int round) {
 
 }  // namespace
 
-PresentingState& presenting(Studio& studio) { return *studio.panels.presenting; }
-const PresentingState& presenting(const Studio& studio) { return *studio.panels.presenting; }
+PresentingState& presenting(Studio& studio) { return studio.panels.of<PresentingState>(); }
+const PresentingState& presenting(const Studio& studio) {
+    return studio.panels.of<PresentingState>();
+}
 
 std::string session_name(const Studio& studio) {
     const auto file = studio.session.file();
@@ -222,32 +224,30 @@ bool is_presenting(const Studio& studio) {
     return state.freezing || state.presented;
 }
 
-std::string why_no_editing(const Studio& studio) {
+std::optional<Notice> why_no_editing(const Studio& studio) {
     const PresentingState& state = presenting(studio);
-    if (state.freezing) return "The looks are being frozen for a vote.";
-    if (!state.presented) return "";
-    const int round = state.presented->round.id;
-    return state.presented->state.phase == Phase::locked
-               ? fmt::format("Round {} is locked, and its result is on show.", round)
-               : fmt::format("Round {} is being presented and voted on: people judge frozen looks.",
-                             round);
-}
-
-bool refuse_editing(Studio& studio) {
-    const std::string why = why_no_editing(studio);
-    if (why.empty()) return false;
-    const Phase phase = phase_of(studio);
-    notify(
-        studio,
-        {Notice::Level::warning,
-         "Nothing can be changed now.",
-         why,
-         presenting(studio).freezing ? "Wait for them, or cancel it in the bar at the top."
-         : phase == Phase::locked    ? "Go back to editing in the bar at the top."
-         : presenting(studio).presented->round.voting() ? "Lock the round in the bar at the top."
-                                                        : "Abort the round in the bar at the top.",
-         studio.now_s + 8.0});
-    return true;
+    const auto refused = [&](std::string why, const char* fix) {
+        return Notice{Notice::Level::warning,
+                      "Nothing can be changed now.",
+                      std::move(why),
+                      fix,
+                      studio.now_s + 8.0};
+    };
+    if (state.freezing) {
+        return refused("The looks are being frozen for a vote.",
+                       "Wait for them, or cancel it in the bar at the top.");
+    }
+    if (!state.presented) return std::nullopt;
+    const Round& round = state.presented->round;
+    if (state.presented->state.phase == Phase::locked) {
+        return refused(fmt::format("Round {} is locked, and its result is on show.", round.id),
+                       "Go back to editing in the bar at the top.");
+    }
+    return refused(
+        fmt::format("Round {} is being presented and voted on: people judge frozen looks.",
+                    round.id),
+        round.voting() ? "Lock the round in the bar at the top."
+                       : "Abort the round in the bar at the top.");
 }
 
 PresentationPhase phase_of(const Studio& studio) {

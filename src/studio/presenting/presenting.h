@@ -17,7 +17,7 @@
 namespace livery {
 
 struct KeyChord;
-struct Shell;
+struct Studio;
 
 /// How the next round is presented; kept with the user's settings.
 struct PresentingSettings {
@@ -137,10 +137,8 @@ std::string session_name(const Studio& studio);
 
 /// A round is frozen, presented, voted on or locked.
 bool is_presenting(const Studio& studio);
-/// Why nothing may be edited now, in a sentence; empty: it may.
-std::string why_no_editing(const Studio& studio);
-/// Tells so; true when nothing may be edited.
-bool refuse_editing(Studio& studio);
+/// Why nothing may be edited now; none: it may.
+std::optional<Notice> why_no_editing(const Studio& studio);
 
 /// The phase of the bar.
 PresentationPhase phase_of(const Studio& studio);
@@ -181,22 +179,23 @@ bool draw_duel(Studio& studio, const Round& round);
 
 /// Once a frame of the window, before it is drawn: takes over what the panel asked for, goes on
 /// freezing, lets time go by and puts on the projector what is to be seen.
-void step_vote_mode(Shell& shell);
+void step_vote_mode(Studio& studio);
 
 /// What a key means while looks are presented, presenters' remote controls among them; false: it
 /// means what it always does. A key that is held down counts once.
-bool vote_mode_key(Shell& shell, const KeyChord& chord, bool repeated);
+bool vote_mode_key(Studio& studio, const KeyChord& chord, bool repeated);
 
 /// When the window must look again; 0: something else will wake it.
-double next_vote_change_s(const Shell& shell);
+double next_vote_change_s(const Studio& studio);
 
 /// The bar over the whole width, which nobody can miss, and what the audience sees.
-bool has_vote_bar(const Shell& shell);
+bool has_vote_bar(const Studio& studio);
 /// Whether the program may end now. While a round is under way it has to be asked twice within some
 /// seconds; the first time says what ends.
-bool may_quit(Shell& shell);
+bool may_quit(Studio& studio);
 
-void draw_vote_bar(Shell& shell);
-void draw_vote_stage(Shell& shell);
+void draw_vote_bar(Studio& studio);
+/// False: no round is under way.
+bool draw_vote_stage(Studio& studio);
 
 }  // namespace livery

@@ -7,13 +7,13 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
-#include "studio/ballot_panel.h"
 #include "studio/kit/theme.h"
 #include "studio/kit/ui_map.h"
 #include "studio/kit/widgets.h"
+#include "studio/presenting/ballot_panel.h"
 #include "studio/presenting/presenting.h"
-#include "studio/projector_control.h"
-#include "studio/window/shell.h"
+#include "studio/projector.h"
+#include "studio/studio.h"
 
 namespace livery {
 
@@ -28,7 +28,7 @@ std::size_t segment_of(const Studio& studio) {
     if (presenting(studio).freezing) return 1;
     switch (phase_of(studio)) {
         case Phase::edit:
-            return open_round(*studio.panels.ballot) ? 2 : 0;
+            return open_round(studio.panels.of<BallotPanelState>()) ? 2 : 0;
         case Phase::adapting:
         case Phase::presenting:
             return 1;
@@ -125,7 +125,7 @@ std::string details(const Studio& studio) {
                                                      state.freezing->looks.size());
     }
     if (!state.presented) {
-        const Round* open = open_round(*studio.panels.ballot);
+        const Round* open = open_round(studio.panels.of<BallotPanelState>());
         return open ? fmt::format("Round {} takes votes, unpresented: close it in the panel.",
                                   open->id)
                     : "Choose looks in the panel, then Present.";
@@ -323,33 +323,35 @@ float draw_buttons(Studio& studio, float right, float top, float height) {
 
 }  // namespace
 
-bool has_vote_bar(const Shell& shell) { return shell.ballots_open || is_presenting(shell.studio); }
+bool has_vote_bar(const Studio& studio) {
+    return studio.panels.of<BallotPanelState>().open || is_presenting(studio);
+}
 
-void draw_vote_bar(Shell& shell) {
+void draw_vote_bar(Studio& studio) {
     const ImVec2 corner = ImGui::GetCursorScreenPos();
     const ImVec2 size = ImGui::GetContentRegionAvail();
     ImGui::GetWindowDrawList()->AddRectFilled(
         corner, {corner.x + size.x, corner.y + size.y}, ImGui::GetColorU32(colours::panel));
-    const float left = draw_segments(shell.studio, corner, size.y);
-    const float right = draw_buttons(shell.studio, corner.x + size.x, corner.y, size.y);
-    draw_words(shell.studio, left, right, corner, size.y);
+    const float left = draw_segments(studio, corner, size.y);
+    const float right = draw_buttons(studio, corner.x + size.x, corner.y, size.y);
+    draw_words(studio, left, right, corner, size.y);
 }
 
-void draw_vote_stage(Shell& shell) {
-    Studio& studio = shell.studio;
+bool draw_vote_stage(Studio& studio) {
+    if (!is_presenting(studio)) return false;
     const PresentingState& state = presenting(studio);
     const ImVec2 from = ImGui::GetCursorScreenPos(), space = ImGui::GetContentRegionAvail();
     ImDrawList& list = *ImGui::GetWindowDrawList();
-    shell.stage_x = from.x;
-    shell.stage_y = from.y;
+    studio.stage_x = from.x;
+    studio.stage_y = from.y;
     const float caption = 1.6f * ImGui::GetTextLineHeight();
     const ImVec2 room(std::max(16.0f, space.x), std::max(16.0f, space.y - caption));
     list.AddRectFilled(
         from, {from.x + room.x, from.y + room.y}, IM_COL32(18, 18, 18, 255), em(0.25f));
     std::string words =
-        is_black(shell) ? "The audience sees nothing now: the projector is black (Ctrl+B)."
-        : shell.projector_monitor.empty() ? "Nobody sees it: no projector is chosen."
-                                          : "What the audience sees: the projector's picture";
+        studio.black ? "The audience sees nothing now: the projector is black (Ctrl+B)."
+        : studio.projector_monitor.empty() ? "Nobody sees it: no projector is chosen."
+                                           : "What the audience sees: the projector's picture";
     if (state.freezing) words = "Each look is rendered once; the projector keeps its picture.";
     if (state.picture && !state.freezing) {
         const auto width = static_cast<float>(state.picture->size_px.x);
@@ -369,6 +371,7 @@ void draw_vote_stage(Shell& shell) {
     ImGui::SetCursorScreenPos(
         {from.x + em(0.3f), from.y + room.y + 0.3f * ImGui::GetTextLineHeight()});
     ImGui::TextColored(colours::dim_text, "%s", words.c_str());
+    return true;
 }
 
 }  // namespace livery

@@ -9,6 +9,7 @@
 
 #include "core/error.h"
 #include "core/log.h"
+#include "core/paths.h"
 #include "core/time.h"
 #include "evaluation/duel.h"
 #include "evaluation/phone_page.h"
@@ -16,15 +17,15 @@
 #include "live/frame_pictures.h"
 #include "live/vote_frames.h"
 #include "projection/projector_screen.h"
-#include "studio/look_thumbnails.h"
+#include "studio/actions.h"
+#include "studio/drawing.h"
+#include "studio/looks/look_thumbnails.h"
+#include "studio/presenting/ballot_panel.h"
 #include "studio/presenting/presenting.h"
+#include "studio/presenting/round_eye.h"
 #include "studio/presenting/surround.h"
-#include "studio/projector_control.h"
-#include "studio/results.h"
-#include "studio/seats/round_eye.h"
-#include "studio/window/actions.h"
-#include "studio/window/shell.h"
-#include "studio/window/wiring.h"
+#include "studio/projector.h"
+#include "studio/studio.h"
 
 namespace livery {
 
@@ -36,7 +37,7 @@ using Event = PresentationEvent;
 constexpr double kBarStep_s = 0.25, kLook_s = 0.5;
 constexpr int kBarSteps = 40;
 
-void show_what_is_due(Shell& shell);
+void show_what_is_due(Studio& studio);
 
 // --- freezing ---
 
@@ -56,8 +57,7 @@ void check_nothing_open(const Studio& studio) {
 }
 
 /// With its looks and what the round asks; the order follows from who is in.
-void begin_freezing(Shell& shell, Freezing freezing) {
-    Studio& studio = shell.studio;
+void begin_freezing(Studio& studio, Freezing freezing) {
     PresentingState& state = presenting(studio);
     const PresentingSettings& settings = presenting_settings(studio);
     if (!studio.setup)
@@ -71,23 +71,22 @@ void begin_freezing(Shell& shell, Freezing freezing) {
     plan.session = session_name(studio);
     check_plan(plan, static_cast<int>(setup.designs.size()));
     freezing.projector = studio.setup;
-    freezing.kept_frozen = is_frozen(shell);
+    freezing.kept_frozen = studio.frozen;
     keep_presenting_settings(studio);
 
     // The audience sees nothing of it.
-    show_signal_test(shell, false);
+    show_signal_test(studio, false);
     stop_trying(studio);
     studio.wiping = studio.showing_b = false;
     studio.glowing_part.reset();
-    set_frozen(shell, true);
+    set_frozen(studio, true);
     state.qr_projected = false;
     state.problem.clear();
     state.freezing = std::move(freezing);
     log_line(LogLevel::info, fmt::format("freezing {} looks", state.freezing->looks.size()));
 }
 
-void begin_presentation(Shell& shell) {
-    Studio& studio = shell.studio;
+void begin_presentation(Studio& studio) {
     PresentingState& state = presenting(studio);
     const PresentingSettings& settings = presenting_settings(studio);
     if (!studio.ballots || is_presenting(studio)) return;
@@ -103,12 +102,11 @@ void begin_presentation(Shell& shell) {
     setup.asks_least = settings.asks_least && setup.designs.size() > 2;
     setup.scales = scales_asked(settings);
     setup.seed = settings.seed.value_or(random_seed());
-    begin_freezing(shell, std::move(freezing));
+    begin_freezing(studio, std::move(freezing));
 }
 
 /// The two looks that lead a locked round, or the next repeat of their duel.
-void begin_duel(Shell& shell, int round) {
-    Studio& studio = shell.studio;
+void begin_duel(Studio& studio, int round) {
     if (!studio.ballots) return;
     const int seed = presenting_settings(studio).seed.value_or(random_seed());
     Freezing freezing;
@@ -123,20 +121,20 @@ void begin_duel(Shell& shell, int round) {
     }
     check_nothing_open(studio);
     if (phase_of(studio) == Phase::locked) send(studio, Event::done);
-    if (!is_presenting(studio)) begin_freezing(shell, std::move(freezing));
+    if (!is_presenting(studio)) begin_freezing(studio, std::move(freezing));
 }
 
-void end_freezing(Shell& shell) {
-    PresentingState& state = presenting(shell.studio);
+void end_freezing(Studio& studio) {
+    PresentingState& state = presenting(studio);
     if (!state.freezing) return;
-    set_frozen(shell, state.freezing->kept_frozen);
+    set_frozen(studio, state.freezing->kept_frozen);
     state.freezing.reset();
-    shell.asked_frame.reset();
+    studio.asked_frame.reset();
 }
 
-void give_up_freezing(Shell& shell, std::exception_ptr why) {
-    end_freezing(shell);
-    notify_failure(shell.studio, "The looks could not be frozen; nothing is presented.", why);
+void give_up_freezing(Studio& studio, std::exception_ptr why) {
+    end_freezing(studio);
+    notify_failure(studio, "The looks could not be frozen; nothing is presented.", why);
 }
 
 /// White, the grey of all looks, and one for each two that follow one another: each as bright as
@@ -200,8 +198,7 @@ void keep_frozen_looks(Studio& studio, const Freezing& freezing, int id) {
 }
 
 /// Everything is rendered: to the disk, and then the round begins.
-void write_and_begin(Shell& shell) {
-    Studio& studio = shell.studio;
+void write_and_begin(Studio& studio) {
     const auto freezing = std::make_shared<Freezing>(*presenting(studio).freezing);
     presenting(studio).freezing->writing = true;
     // Who joined while the looks were rendered sits down too.
@@ -210,14 +207,14 @@ void write_and_begin(Shell& shell) {
     freezing->setup.plan->folder = folder_name(freezing->setup);
     const auto folder = studio.ballots->file().parent_path() / freezing->setup.plan->folder;
     studio.background->run(
-        [&shell, freezing, folder](const Progress&) -> Background::Then {
+        [&studio, freezing, folder](const Progress&) -> Background::Then {
             const VoteFrames frames = with_greys(*freezing);
             write_vote_frames(folder, frames);
             for (const auto& [name, frame] : frames) {
                 freezing->setup.plan->frames[name] = hash_of(*frame);
             }
-            return [&shell, freezing] {
-                Studio& there = shell.studio;
+            return [&studio, freezing] {
+                Studio& there = studio;
                 if (!presenting(there).freezing) return;  // broken off meanwhile
                 try {
                     const RoundSetup& setup = freezing->setup;
@@ -232,28 +229,27 @@ void write_and_begin(Shell& shell) {
                                there.ballots->plan_of(id).value(),
                                state);
                     // Dark until its frames are there; the newest look is nobody's business.
-                    show_what_is_due(shell);
-                    set_frozen(shell, false);
-                    if (is_black(shell)) set_black(shell, false);
+                    show_what_is_due(studio);
+                    set_frozen(studio, false);
+                    if (studio.black) set_black(studio, false);
                 } catch (const std::exception&) {
-                    give_up_freezing(shell, std::current_exception());
+                    give_up_freezing(studio, std::current_exception());
                 }
             };
         },
-        [&shell](std::exception_ptr why) { give_up_freezing(shell, why); });
+        [&studio](std::exception_ptr why) { give_up_freezing(studio, why); });
 }
 
-void go_on_freezing(Shell& shell) {
-    Studio& studio = shell.studio;
+void go_on_freezing(Studio& studio) {
     Freezing& freezing = *presenting(studio).freezing;
     if (freezing.writing) return;
     const std::size_t done = freezing.frames.size();
     if (freezing.asked == 0) {
         // Files of its paints may have to be read first.
-        freezing.asked = ask_for_look(shell, freezing.looks[done]).value_or(0);
+        freezing.asked = ask_for_look(studio, freezing.looks[done]).value_or(0);
         return;
     }
-    if (const auto newest = shell.results->newest_frame();
+    if (const auto newest = studio.results->newest_frame();
         newest && newest->number == freezing.asked && !newest->problem.empty()) {
         throw std::runtime_error(newest->problem);
     }
@@ -267,7 +263,7 @@ void go_on_freezing(Shell& shell) {
     freezing.frames[frame_of_look(static_cast<int>(done))] = drive;
     freezing.frozen.push_back({std::move(wanted), drive});
     freezing.asked = 0;
-    if (done + 1 == freezing.looks.size()) write_and_begin(shell);
+    if (done + 1 == freezing.looks.size()) write_and_begin(studio);
 }
 
 // --- what is to be seen ---
@@ -305,27 +301,31 @@ std::string key_of(const PresentedRound& presented, const std::string& frame, do
 }
 
 /// Dark until the frames are loaded: never a look that was not frozen.
-Image8 nothing(const Shell& shell) {
-    const auto& setup = shell.studio.setup;
+Image8 nothing(const Studio& studio) {
+    const auto& setup = studio.setup;
     return setup ? Image8(setup->view.width, setup->view.height, 3) : Image8(1280, 800, 3);
 }
 
-void show(Shell& shell, const std::string& key, const Image8& picture) {
-    PresentingState& state = presenting(shell.studio);
+void show(Studio& studio, const std::string& key, const Image8& picture) {
+    PresentingState& state = presenting(studio);
     const std::uint64_t number = next_picture_number();
     state.picture = projector_picture(picture, number);
     state.picture_key = key;
-    shell.trace->write("vote-picture", number, key);
-    shell.results->show_instead(state.picture);
+    studio.trace->write("vote-picture", number, key);
+    ProjectorWords words;
+    if (state.freezing) words = {"keeps its picture while looks are frozen"};
+    if (state.presented)
+        words = {"showing the frozen frames of the vote", ProjectorWords::Mood::good};
+    show_instead(studio, {state.picture, "", words});
 }
 
-void show_frames_again(Shell& shell) {
-    PresentingState& state = presenting(shell.studio);
+void show_frames_again(Studio& studio) {
+    PresentingState& state = presenting(studio);
     if (state.picture_key.empty()) return;
     state.picture_key.clear();
     state.picture.reset();
-    shell.results->show_instead(nullptr);
-    shell.asked_frame.reset();
+    show_instead(studio, {});
+    studio.asked_frame.reset();
 }
 
 /// The mock-up in neutral grey, as bright as the mean of what it shows now; nothing before it shows
@@ -338,15 +338,14 @@ std::optional<Image8> grey_mockup(const Studio& studio) {
 
 /// While looks are frozen the audience sees none of them. What was there first stays: frames change
 /// from look to look meanwhile.
-void show_grey(Shell& shell) {
+void show_grey(Studio& studio) {
     const std::string key = "grey";
-    if (presenting(shell.studio).picture_key == key) return;
-    show(shell, key, grey_mockup(shell.studio).value_or(nothing(shell)));
+    if (presenting(studio).picture_key == key) return;
+    show(studio, key, grey_mockup(studio).value_or(nothing(studio)));
 }
 
 /// For people to join, before a round: neutral grey on the mock-up, the code beside it.
-void show_qr_code(Shell& shell) {
-    Studio& studio = shell.studio;
+void show_qr_code(Studio& studio) {
     PresentingState& state = presenting(studio);
     const auto& phones = state.phones->place();
     if (!state.invitation || !phones) return;
@@ -361,7 +360,7 @@ void show_qr_code(Shell& shell) {
     try {
         if (!place) throw Refused("there is no room for it beside the mock-up", "");
         draw_qr_code(picture, *place, qr_code(join_url(*phones, state.invitation->token)));
-        show(shell, key, picture);
+        show(studio, key, picture);
     } catch (const std::exception& error) {
         state.qr_projected = false;
         notify(studio,
@@ -372,13 +371,12 @@ void show_qr_code(Shell& shell) {
     }
 }
 
-void show_what_is_due(Shell& shell) {
-    Studio& studio = shell.studio;
+void show_what_is_due(Studio& studio) {
     PresentingState& state = presenting(studio);
     if (!state.presented) {
-        if (state.freezing) return show_grey(shell);
-        if (state.qr_projected && state.phones) return show_qr_code(shell);
-        return show_frames_again(shell);
+        if (state.freezing) return show_grey(studio);
+        if (state.qr_projected && state.phones) return show_qr_code(studio);
+        return show_frames_again(studio);
     }
     const PresentedRound& presented = *state.presented;
     const std::string frame = frame_of(presented.plan, presented.state);
@@ -387,19 +385,18 @@ void show_what_is_due(Shell& shell) {
                                 ? std::string("dark")
                                 : key_of(presented, frame, studio.now_s);
     if (state.picture_key == key) return;
-    show(shell,
+    show(studio,
          key,
-         found == presented.frames.end() ? nothing(shell)
+         found == presented.frames.end() ? nothing(studio)
                                          : with_surround(presented, *found->second, studio.now_s));
 }
 
 /// No look's time goes by while nobody can see it.
-void pause_unseen(Shell& shell) {
-    Studio& studio = shell.studio;
+void pause_unseen(Studio& studio) {
     const PresentingState& state = presenting(studio);
     if (!studio.projector || !state.presented || !is_running(state.presented->state)) return;
     const bool gone = studio.projector->state() == ProjectorScreen::State::waiting_for_monitor;
-    if (!gone && !is_black(shell)) return;
+    if (!gone && !studio.black) return;
     send(studio, Event::pause);
     notify(studio,
            {Notice::Level::warning,
@@ -413,35 +410,34 @@ void pause_unseen(Shell& shell) {
 
 }  // namespace
 
-void step_vote_mode(Shell& shell) {
-    Studio& studio = shell.studio;
+void step_vote_mode(Studio& studio) {
     PresentingState& state = presenting(studio);
-    if (is_presenting(studio)) shell.ballots_open = true;
+    if (is_presenting(studio)) show_ballots(studio, true);
     try {
-        if (std::exchange(state.begin_wanted, false)) begin_presentation(shell);
-        if (const auto round = std::exchange(state.duel_wanted, {})) begin_duel(shell, *round);
+        if (std::exchange(state.begin_wanted, false)) begin_presentation(studio);
+        if (const auto round = std::exchange(state.duel_wanted, {})) begin_duel(studio, *round);
     } catch (const std::exception&) {
         notify_failure(studio, "The round does not begin.", std::current_exception());
     }
     try {
-        if (std::exchange(state.give_up_wanted, false)) end_freezing(shell);
-        if (state.freezing) go_on_freezing(shell);
+        if (std::exchange(state.give_up_wanted, false)) end_freezing(studio);
+        if (state.freezing) go_on_freezing(studio);
     } catch (const std::exception&) {
-        give_up_freezing(shell, std::current_exception());
+        give_up_freezing(studio, std::current_exception());
     }
     watch_phones(studio);
     if (state.phones || state.presented) read_seats(studio);
-    pause_unseen(shell);
+    pause_unseen(studio);
     if (state.presented) {
         PresentationState& clock = state.presented->state;
         // Until it can be seen no time goes by.
         if (state.presented->frames.empty()) clock.at_s = studio.now_s;
         send(studio, Event::tick);
     }
-    show_what_is_due(shell);
+    show_what_is_due(studio);
 }
 
-bool vote_mode_key(Shell& shell, const KeyChord& chord, bool repeated) {
+bool vote_mode_key(Studio& studio, const KeyChord& chord, bool repeated) {
     static constexpr std::pair<int, Event> keys[] = {{GLFW_KEY_RIGHT, Event::next},
                                                      {GLFW_KEY_DOWN, Event::next},
                                                      {GLFW_KEY_PAGE_DOWN, Event::next},
@@ -452,7 +448,7 @@ bool vote_mode_key(Shell& shell, const KeyChord& chord, bool repeated) {
                                                      {GLFW_KEY_R, Event::repeat},
                                                      {GLFW_KEY_B, Event::blank},
                                                      {GLFW_KEY_PERIOD, Event::blank}};
-    PresentingState& state = presenting(shell.studio);
+    PresentingState& state = presenting(studio);
     if (state.asking_to_abort || state.asking_to_lock) {
         // The question is answered first.
         const bool keeps = chord.key == GLFW_KEY_ESCAPE && !chord.ctrl && !chord.shift;
@@ -462,19 +458,18 @@ bool vote_mode_key(Shell& shell, const KeyChord& chord, bool repeated) {
         });
         return keeps || means;
     }
-    const Phase phase = phase_of(shell.studio);
+    const Phase phase = phase_of(studio);
     const bool shows = phase == Phase::adapting || phase == Phase::presenting;
     if (chord.ctrl || chord.shift || !shows) return false;
     for (const auto& [key, event] : keys) {
         if (key != chord.key) continue;
-        if (!repeated) send(shell.studio, event);
+        if (!repeated) send(studio, event);
         return true;
     }
     return false;
 }
 
-bool may_quit(Shell& shell) {
-    Studio& studio = shell.studio;
+bool may_quit(Studio& studio) {
     PresentingState& state = presenting(studio);
     if (!state.presented || phase_of(studio) == Phase::locked) return true;
     if (studio.now_s < state.quits_until_s) return true;
@@ -491,9 +486,9 @@ bool may_quit(Shell& shell) {
     return false;
 }
 
-double next_vote_change_s(const Shell& shell) {
-    const PresentingState& state = presenting(shell.studio);
-    const double now_s = shell.studio.now_s;
+double next_vote_change_s(const Studio& studio) {
+    const PresentingState& state = presenting(studio);
+    const double now_s = studio.now_s;
     // Its bar: the window's frames are not to take the looks' time. What is finished wakes it.
     if (state.freezing) return now_s + kBarStep_s;
     if (state.presented && is_running(state.presented->state)) {
@@ -501,6 +496,58 @@ double next_vote_change_s(const Shell& shell) {
         return std::min(step.at_s + step.left_s + 0.001, now_s + kBarStep_s);
     }
     return state.presented || state.phones ? now_s + kLook_s : 0.0;
+}
+
+namespace {
+
+void open_ballots(Studio& studio) {
+    try {
+        const auto folder = user_folder();
+        make_output_folder(folder);
+        studio.ballots = std::make_unique<BallotStore>(folder / "ballots.sqlite");
+    } catch (const std::exception& error) {
+        notify(studio, {Notice::Level::warning, "Ballots cannot be kept.", error.what(), ""});
+    }
+}
+
+void describe_vote(const Studio& studio, MapState& state) {
+    const PresentingState& vote = presenting(studio);
+    state["vote"] = map_text(vote.freezing ? "freezing" : to_string(phase_of(studio)));
+    state["vote_code"] = map_text(code_on_show(studio));
+    if (vote.presented) {
+        const PresentedRound& presented = *vote.presented;
+        state["vote_frame"] = map_text(frame_of(presented.plan, presented.state));
+        state["vote_paused"] = map_text(presented.state.paused);
+        state["vote_blank"] = map_text(presented.state.blank);
+        state["vote_place"] = std::to_string(presented.state.place);
+        state["vote_round"] = std::to_string(presented.round.id);
+        state["vote_loaded"] = map_text(!presented.frames.empty());
+    }
+    state["phones"] =
+        map_text(vote.phones && vote.phones->place() ? url_of(*vote.phones->place()) : "");
+}
+
+}  // namespace
+
+Panel presenting_panel() {
+    return {.name = "presenting",
+            .draw_stage = draw_vote_stage,
+            .start =
+                [](Studio& s) {
+                    open_ballots(s);
+                    find_presented_round(s);
+                    step_vote_mode(s);
+                },
+            .step = step_vote_mode,
+            .stop = [](Studio& s) { presenting(s).picture.reset(); },
+            .press =
+                [](Studio& s, const KeyChord& chord, bool repeated) {
+                    return vote_mode_key(s, chord, repeated) ? EventUse::command
+                                                             : EventUse::passed_on;
+                },
+            .next_change_s = next_vote_change_s,
+            .locks_editing = why_no_editing,
+            .describe = describe_vote};
 }
 
 }  // namespace livery

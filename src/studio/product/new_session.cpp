@@ -5,9 +5,8 @@
 #include "live/projector_setup.h"
 #include "scene/library.h"
 #include "studio/kit/folders.h"
-#include "studio/look_files.h"
 #include "studio/product/open_session.h"
-#include "studio/window/shell.h"
+#include "studio/studio.h"
 
 namespace livery {
 
@@ -60,13 +59,13 @@ std::string words_of(const std::exception_ptr& why) {
 }
 
 /// The page that asked, if it is still open.
-NewSession* page_of(Shell& shell, std::uint64_t number) {
-    const bool still_open = shell.new_session && shell.new_session->number == number;
-    return still_open ? shell.new_session.get() : nullptr;
+NewSession* page_of(Studio& studio, std::uint64_t number) {
+    const bool still_open = page(studio) && page(studio)->number == number;
+    return still_open ? page(studio).get() : nullptr;
 }
 
 /// In the background, as answered.
-void create(Shell& shell, NewSession& asked) {
+void create(Studio& studio, NewSession& asked) {
     asked.stage = NewSession::Stage::creating;
     const auto answered = std::make_shared<NewSession>();
     answered->given = asked.given;
@@ -75,20 +74,24 @@ void create(Shell& shell, NewSession& asked) {
     answered->answers = asked.answers;
     answered->is_product_file = asked.is_product_file;
     answered->session = asked.session;
-    shell.studio.background->run(
-        [&shell, answered](const Progress&) -> Background::Then {
+    studio.background->run(
+        [&studio, answered](const Progress&) -> Background::Then {
             const auto opened = std::make_shared<OpenedSession>(create_session(*answered));
-            return [&shell, opened] { shell.next_session = opened; };
+            return [&studio, opened] { studio.next_session = opened; };
         },
-        [&shell, number = asked.number](const std::exception_ptr& why) {
-            NewSession* page = page_of(shell, number);
-            if (!page) return notify_failure(shell.studio, "The session was not made.", why);
+        [&studio, number = asked.number](const std::exception_ptr& why) {
+            NewSession* page = page_of(studio, number);
+            if (!page) return notify_failure(studio, "The session was not made.", why);
             page->stage = NewSession::Stage::asking;
             page->problem = words_of(why);
         });
 }
 
 }  // namespace
+
+std::unique_ptr<NewSession>& page(Studio& studio) {
+    return studio.panels.of<NewSessionPage>().open;
+}
 
 bool is_product_path(const std::filesystem::path& file) {
     return has_suffix_of(file, {".glb", ".gltf", ".ply", ".obj", ".json"});
@@ -134,23 +137,23 @@ OpenedSession create_session(const NewSession& asked) {
     }
 }
 
-void begin_new_session(Shell& shell,
+void begin_new_session(Studio& studio,
                        const std::filesystem::path& file,
                        const std::filesystem::path& session,
                        std::optional<LengthUnit> unit) {
-    const std::uint64_t number = ++shell.new_sessions;
-    if (shell.new_session) shell.closed_page = std::move(shell.new_session);
-    shell.new_session = std::make_unique<NewSession>();
-    shell.new_session->number = number;
-    shell.new_session->given = std::filesystem::absolute(file).lexically_normal();
-    shell.new_session->unit = unit;
-    if (!session.empty()) shell.new_session->session = std::filesystem::absolute(session);
-    const auto page = [&shell, number] { return page_of(shell, number); };
-    shell.studio.background->run(
-        [page, given = shell.new_session->given, unit](const Progress&) -> Background::Then {
+    const std::uint64_t number = ++studio.panels.of<NewSessionPage>().pages;
+    if (page(studio)) studio.panels.of<NewSessionPage>().closed = std::move(page(studio));
+    page(studio) = std::make_unique<NewSession>();
+    page(studio)->number = number;
+    page(studio)->given = std::filesystem::absolute(file).lexically_normal();
+    page(studio)->unit = unit;
+    if (!session.empty()) page(studio)->session = std::filesystem::absolute(session);
+    const auto its_page = [&studio, number] { return page_of(studio, number); };
+    studio.background->run(
+        [its_page, given = page(studio)->given, unit](const Progress&) -> Background::Then {
             const auto read = std::make_shared<Read>(read_given(given, unit));
-            return [page, read] {
-                NewSession* asked = page();
+            return [its_page, read] {
+                NewSession* asked = its_page();
                 if (!asked) return;
                 asked->facts = std::move(read->facts);
                 asked->suggested = std::move(read->suggested);
@@ -167,26 +170,26 @@ void begin_new_session(Shell& shell,
                     unused_session_file(default_session_file().parent_path(), file_name_of(name));
             };
         },
-        [page](const std::exception_ptr& why) {
-            NewSession* asked = page();
+        [its_page](const std::exception_ptr& why) {
+            NewSession* asked = its_page();
             if (!asked) return;
             asked->stage = NewSession::Stage::unreadable;
             asked->problem = words_of(why);
         });
 }
 
-void ask_for_product(Shell& shell) {
+void ask_for_product(Studio& studio) {
     FileQuestion question;
     question.title = "New session";
     question.action = "Next";
     question.suffixes = {".glb", ".gltf", ".ply", ".obj", ".json"};
     question.suggested = documents_folder();
-    question.then = [&shell](const auto& file) { begin_new_session(shell, file); };
-    shell.studio.file_dialog->ask(std::move(question));
+    question.then = [&studio](const auto& file) { begin_new_session(studio, file); };
+    studio.file_dialog->ask(std::move(question));
 }
 
-void start_creating(Shell& shell) {
-    NewSession& asked = *shell.new_session;
+void start_creating(Studio& studio) {
+    NewSession& asked = *page(studio);
     asked.problem = asked.is_product_file ? "" : problem_of(asked.answers);
     asked.session = typed_path(asked.session.string(), default_session_file().parent_path());
     if (asked.session.empty()) {
@@ -194,31 +197,31 @@ void start_creating(Shell& shell) {
     } else if (asked.session.extension() != ".livery") {
         asked.session += ".livery";
     }
-    if (asked.problem.empty()) asked.problem = why_not_to_leave(shell.studio);
+    if (asked.problem.empty()) asked.problem = why_not_to_leave(studio);
     if (!asked.problem.empty()) return;
     const std::string doing = "Making " + asked.session.filename().string();
-    leave_session(shell, doing, "Stop and create", [&shell, number = asked.number] {
-        if (NewSession* page = page_of(shell, number)) create(shell, *page);
+    leave_session(studio, doing, "Stop and create", [&studio, number = asked.number] {
+        if (NewSession* page = page_of(studio, number)) create(studio, *page);
     });
 }
 
-void ask_for_mesh_picture(Shell& shell, glm::ivec2 size_px) {
-    NewSession& asked = *shell.new_session;
+void ask_for_mesh_picture(Studio& studio, glm::ivec2 size_px) {
+    NewSession& asked = *page(studio);
     const MeshPictureKey wanted{
         asked.answers.up, asked.answers.quarter_turns, asked.azimuth_rad, size_px};
     if (asked.pictured == wanted || asked.picturing || !asked.mesh) return;
     asked.pictured = wanted;
     asked.picturing = true;
-    shell.studio.background->run(
-        [&shell, mesh = asked.mesh, wanted, number = asked.number](
+    studio.background->run(
+        [&studio, mesh = asked.mesh, wanted, number = asked.number](
             const Progress&) -> Background::Then {
             const auto picture = std::make_shared<const Image8>(
                 mesh_picture(*mesh,
                              upright_rotation(wanted.up, wanted.quarter_turns),
                              wanted.size_px,
                              wanted.azimuth_rad));
-            return [&shell, picture, number] {
-                NewSession* page = page_of(shell, number);
+            return [&studio, picture, number] {
+                NewSession* page = page_of(studio, number);
                 if (!page) return;
                 page->picturing = false;
                 Texture2D texture(TextureShape{picture->width, picture->height, 0, 1},
@@ -228,9 +231,9 @@ void ask_for_mesh_picture(Shell& shell, glm::ivec2 size_px) {
                 page->picture = std::move(texture);
             };
         },
-        [&shell, number = asked.number](const std::exception_ptr& why) {
-            if (NewSession* page = page_of(shell, number)) page->picturing = false;
-            notify_failure(shell.studio, "The mesh's picture could not be drawn.", why);
+        [&studio, number = asked.number](const std::exception_ptr& why) {
+            if (NewSession* page = page_of(studio, number)) page->picturing = false;
+            notify_failure(studio, "The mesh's picture could not be drawn.", why);
         });
 }
 

@@ -19,7 +19,7 @@
 
 namespace livery {
 
-struct Shell;
+struct Studio;
 
 /// A session and what it shows, ready for a window.
 struct OpenedSession {
@@ -61,6 +61,13 @@ struct NewSession {
     Texture2D picture;
 };
 
+struct NewSessionPage {
+    std::unique_ptr<NewSession> open;    ///< none: closed
+    std::unique_ptr<NewSession> closed;  ///< its picture may be in this frame's drawing
+    std::uint64_t pages = 0;             ///< opened so far
+};
+std::unique_ptr<NewSession>& page(Studio& studio);
+
 /// What `livery desktop FILE` and the dialogs take as a product.
 bool is_product_path(const std::filesystem::path& file);
 
@@ -77,18 +84,18 @@ OpenedSession create_session(const NewSession& asked);
 /// Opens the page with a mesh or product file, which is read in the background. Without a file for
 /// the session one is suggested, in the user's folder. A unit is that of the file's numbers,
 /// whatever the file says.
-void begin_new_session(Shell& shell,
+void begin_new_session(Studio& studio,
                        const std::filesystem::path& file,
                        const std::filesystem::path& session = {},
                        std::optional<LengthUnit> unit = {});
 /// Asks for the file by the dialog first.
-void ask_for_product(Shell& shell);
-void draw_new_session(Shell& shell);  ///< once a frame
+void ask_for_product(Studio& studio);
+void draw_new_session(Studio& studio);  ///< once a frame
 
 // What the page asks for.
 /// Makes the session in the background; the window then goes on with it.
-void start_creating(Shell& shell);
+void start_creating(Studio& studio);
 /// The mesh as it would stand; drawn in the background when it has changed.
-void ask_for_mesh_picture(Shell& shell, glm::ivec2 size_px);
+void ask_for_mesh_picture(Studio& studio, glm::ivec2 size_px);
 
 }  // namespace livery

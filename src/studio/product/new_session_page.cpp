@@ -13,7 +13,8 @@
 #include "studio/kit/theme.h"
 #include "studio/kit/widgets.h"
 #include "studio/kit/words.h"
-#include "studio/window/shell.h"
+#include "studio/product/new_session.h"
+#include "studio/studio.h"
 
 namespace livery {
 
@@ -196,10 +197,10 @@ void draw_parts(NewSession& asked) {
     dim_text("Once it is open: click a part, then a paint.");
 }
 
-void draw_picture(Shell& shell, const ImVec2& size) {
-    NewSession& asked = *shell.new_session;
-    if (shell.window) {
-        ask_for_mesh_picture(shell, {static_cast<int>(size.x), static_cast<int>(size.y)});
+void draw_picture(Studio& studio, const ImVec2& size) {
+    NewSession& asked = *page(studio);
+    if (studio.window) {
+        ask_for_mesh_picture(studio, {static_cast<int>(size.x), static_cast<int>(size.y)});
     }
     const ImVec2 from = ImGui::GetCursorScreenPos();
     ImGui::InvisibleButton("##picture", size);
@@ -224,8 +225,8 @@ void draw_picture(Shell& shell, const ImVec2& size) {
     }
 }
 
-void draw_session_file(Shell& shell) {
-    NewSession& asked = *shell.new_session;
+void draw_session_file(Studio& studio) {
+    NewSession& asked = *page(studio);
     ImGui::Dummy({0.0f, em(0.3f)});
     row("Session");
     std::string file = asked.session.string();
@@ -241,20 +242,20 @@ void draw_session_file(Shell& shell) {
         question.suffixes = {".livery"};
         question.only_new = true;
         question.suggested = asked.session;
-        question.then = [&shell](const auto& chosen) {
-            if (shell.new_session) shell.new_session->session = chosen;
+        question.then = [&studio](const auto& chosen) {
+            if (page(studio)) page(studio)->session = chosen;
         };
-        shell.studio.file_dialog->ask(std::move(question));
+        studio.file_dialog->ask(std::move(question));
     }
     name_last_item("new-session:change");
 }
 
-void draw_questions(Shell& shell) {
-    NewSession& asked = *shell.new_session;
+void draw_questions(Studio& studio) {
+    NewSession& asked = *page(studio);
     begin_disabled(asked.stage == NewSession::Stage::creating);
     ImGui::BeginGroup();
     const ImVec2 picture = picture_size(ImGui::GetContentRegionAvail().x);
-    draw_picture(shell, picture);
+    draw_picture(studio, picture);
     draw_sizes(asked, picture.x);
     ImGui::EndGroup();
     ImGui::SameLine(0.0f, em(1.2f));
@@ -269,12 +270,12 @@ void draw_questions(Shell& shell) {
     }
     draw_parts(asked);
     ImGui::EndChild();
-    draw_session_file(shell);
+    draw_session_file(studio);
     end_disabled();
 }
 
-void draw_given(Shell& shell) {
-    const NewSession& asked = *shell.new_session;
+void draw_given(Studio& studio) {
+    const NewSession& asked = *page(studio);
     ImGui::AlignTextToFramePadding();
     ImGui::TextUnformatted(asked.given.filename().string().c_str());
     tooltip(asked.given.string());
@@ -283,14 +284,14 @@ void draw_given(Shell& shell) {
         dim_text(readable_number(static_cast<double>(asked.facts.triangles)) + " triangles");
     }
     ImGui::SameLine(ImGui::GetContentRegionMax().x - em(9.0f));
-    if (ImGui::Button("Another file…", {em(9.0f), 0.0f})) ask_for_product(shell);
+    if (ImGui::Button("Another file…", {em(9.0f), 0.0f})) ask_for_product(studio);
     name_last_item("new-session:mesh");
     ImGui::Separator();
 }
 
 /// True when the page is done with.
-bool draw_buttons(Shell& shell) {
-    const NewSession& asked = *shell.new_session;
+bool draw_buttons(Studio& studio) {
+    const NewSession& asked = *page(studio);
     using Stage = NewSession::Stage;
     const float width = em(9.0f);
     ImGui::SetCursorPosX(ImGui::GetContentRegionMax().x - 2.0f * width -
@@ -301,7 +302,7 @@ bool draw_buttons(Shell& shell) {
     end_disabled();
     ImGui::SameLine();
     begin_disabled(asked.stage != Stage::asking);
-    if (ImGui::Button("Create session", {width, 0.0f})) start_creating(shell);
+    if (ImGui::Button("Create session", {width, 0.0f})) start_creating(studio);
     name_last_item("new-session:create");
     end_disabled();
     return (cancelled || was_pressed(ImGuiKey_Escape)) && asked.stage != Stage::creating;
@@ -309,14 +310,15 @@ bool draw_buttons(Shell& shell) {
 
 }  // namespace
 
-void draw_new_session(Shell& shell) {
-    shell.closed_page.reset();  // What was drawn of it is on the screen by now.
+void draw_new_session(Studio& studio) {
+    studio.panels.of<NewSessionPage>()
+        .closed.reset();  // What was drawn of it is on the screen by now.
     // A file dialog or a question that the page asked for comes instead of it for a while.
-    if (!shell.new_session || shell.studio.file_dialog->is_open() || shell.question) {
-        if (shell.new_session) shell.new_session->to_open = true;
+    if (!page(studio) || studio.file_dialog->is_open() || studio.question) {
+        if (page(studio)) page(studio)->to_open = true;
         return;
     }
-    NewSession& asked = *shell.new_session;
+    NewSession& asked = *page(studio);
     const char* title = "New session###new-session";
     if (std::exchange(asked.to_open, false)) ImGui::OpenPopup(title);
     const ImVec2 window = ImGui::GetMainViewport()->Size;
@@ -325,17 +327,51 @@ void draw_new_session(Shell& shell) {
     if (!ImGui::BeginPopupModal(title, nullptr, ImGuiWindowFlags_NoResize)) return;
     // A notice that comes meanwhile stays behind it.
     ImGui::BringWindowToDisplayFront(ImGui::GetCurrentWindow());
-    draw_given(shell);
+    draw_given(studio);
     using Stage = NewSession::Stage;
     if (asked.stage == Stage::reading) dim_text("Reading the file…");
-    if (asked.stage == Stage::asking || asked.stage == Stage::creating) draw_questions(shell);
+    if (asked.stage == Stage::asking || asked.stage == Stage::creating) draw_questions(studio);
     if (asked.stage == Stage::creating) dim_text("Making the session…");
     if (!asked.problem.empty()) warning_text(asked.problem);
-    if (draw_buttons(shell)) {
-        shell.closed_page = std::move(shell.new_session);
+    if (draw_buttons(studio)) {
+        studio.panels.of<NewSessionPage>().closed = std::move(page(studio));
         ImGui::CloseCurrentPopup();
     }
     ImGui::EndPopup();
+}
+
+namespace {
+
+const char* name_of(NewSession::Stage stage) {
+    switch (stage) {
+        case NewSession::Stage::reading:
+            return "reading";
+        case NewSession::Stage::unreadable:
+            return "unreadable";
+        case NewSession::Stage::asking:
+            return "asking";
+        case NewSession::Stage::creating:
+            return "creating";
+    }
+    return "reading";
+}
+
+void describe_new_session(const Studio& studio, MapState& state) {
+    const NewSession* open = studio.panels.of<NewSessionPage>().open.get();
+    state["new_session"] = map_text(open ? name_of(open->stage) : "closed");
+    state["new_session_pictured"] = map_text(open && open->picture.name() != 0);
+    state["new_session_says"] = map_text(open ? open->problem : "");
+}
+
+}  // namespace
+
+Panel new_session_panel() {
+    return {
+        .name = "new-session",
+        .place = PanelPlace::page,
+        .draw = draw_new_session,
+        .is_open = [](const Studio& s) { return s.panels.of<NewSessionPage>().open != nullptr; },
+        .describe = describe_new_session};
 }
 
 }  // namespace livery

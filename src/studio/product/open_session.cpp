@@ -2,14 +2,16 @@
 
 #include <algorithm>
 
+#include <GLFW/glfw3.h>
+
 #include "core/error.h"
 #include "core/json.h"
 #include "scene/library.h"
 #include "session/session_file.h"
 #include "studio/kit/folders.h"
+#include "studio/kit/running_window.h"
 #include "studio/product/new_session.h"
-#include "studio/window/running_window.h"
-#include "studio/window/shell.h"
+#include "studio/studio.h"
 
 namespace livery {
 
@@ -52,11 +54,10 @@ std::string why_not_to_leave(const Studio& studio) {
     return "What was done in the session that is open is not saved yet (File, Save session as…).";
 }
 
-void leave_session(Shell& shell,
+void leave_session(Studio& studio,
                    const std::string& doing,
                    const std::string& action,
                    std::function<void()> then) {
-    const Studio& studio = shell.studio;
     const bool captures =
         studio.capture && studio.capture->view().doing == CaptureView::Doing::capturing;
     const bool calibrates = studio.bench && studio.bench->calibrating().running;
@@ -67,12 +68,11 @@ void leave_session(Shell& shell,
                                        : " stops it, and nothing of it is kept.");
     question.action = action;
     question.then = std::move(then);
-    shell.question = std::move(question);
+    studio.question = std::move(question);
 }
 
-void open_other_session(Shell& shell, const std::filesystem::path& given) {
+void open_other_session(Studio& studio, const std::filesystem::path& given) {
     const auto file = std::filesystem::absolute(given).lexically_normal();
-    Studio& studio = shell.studio;
     const std::string what = "The session " + file.filename().string() + " was not opened.";
     std::error_code error;
     if (const auto open = studio.session.file();
@@ -85,42 +85,42 @@ void open_other_session(Shell& shell, const std::filesystem::path& given) {
         return;
     }
     leave_session(
-        shell, "Opening " + file.filename().string(), "Stop and open", [&shell, file, what] {
-            shell.studio.background->run(
-                [&shell, file](const Progress&) -> Background::Then {
+        studio, "Opening " + file.filename().string(), "Stop and open", [&studio, file, what] {
+            studio.background->run(
+                [&studio, file](const Progress&) -> Background::Then {
                     const auto opened = std::make_shared<OpenedSession>(open_existing(file));
-                    return [&shell, opened] { shell.next_session = opened; };
+                    return [&studio, opened] { studio.next_session = opened; };
                 },
-                [&shell, what](const std::exception_ptr& why) {
-                    notify_failure(shell.studio, what, why);
+                [&studio, what](const std::exception_ptr& why) {
+                    notify_failure(studio, what, why);
                 });
         });
 }
 
-void ask_for_session(Shell& shell) {
+void ask_for_session(Studio& studio) {
     FileQuestion question;
     question.title = "Open session";
     question.action = "Open";
     question.suffixes = {".livery"};
-    const auto open = shell.studio.session.file();
+    const auto open = studio.session.file();
     question.suggested = open ? open->parent_path() : documents_folder();
-    question.then = [&shell](const auto& file) { open_other_session(shell, file); };
-    shell.studio.file_dialog->ask(std::move(question));
+    question.then = [&studio](const auto& file) { open_other_session(studio, file); };
+    studio.file_dialog->ask(std::move(question));
 }
 
-void take_dropped_files(Shell& shell, const std::vector<std::filesystem::path>& files) {
+void take_dropped_files(Studio& studio, const std::vector<std::filesystem::path>& files) {
     if (files.empty()) return;
     const std::filesystem::path& file = files.front();
     if (files.size() == 1 && is_file(file)) {
         if (has_suffix_of(file, {".livery"}) || is_session_file(file)) {
-            return open_other_session(shell, file);
+            return open_other_session(studio, file);
         }
         const bool json = has_suffix_of(file, {".json"});
         if (is_product_path(file) && (!json || names_a_mesh(file))) {
-            return begin_new_session(shell, file);
+            return begin_new_session(studio, file);
         }
     }
-    notify(shell.studio,
+    notify(studio,
            {Notice::Level::warning,
             files.size() == 1 ? file.filename().string() + " cannot be opened here."
                               : "Drop one file at a time.",
@@ -151,5 +151,16 @@ void remember_recent_session(UserSettings& settings, const std::filesystem::path
     }
     keep_setting(settings, kRecentSetting, all);
 }
+
+namespace {
+
+std::vector<Action> session_actions() {
+    return {{"new-session", "File", "New session…", {ctrl(GLFW_KEY_N)}, ask_for_product},
+            {"open-session", "File", "Open session…", {ctrl(GLFW_KEY_O)}, ask_for_session}};
+}
+
+}  // namespace
+
+Panel sessions_panel() { return {.name = "sessions", .actions = session_actions}; }
 
 }  // namespace livery

@@ -10,19 +10,18 @@
 
 namespace livery {
 
-struct Shell;
 struct Studio;
 
 /// Opens it in the background; the window then goes on with it. Where it cannot be opened a notice
 /// says why and the session that is open stays; one that another start has open has its window
 /// asked for.
-void open_other_session(Shell& shell, const std::filesystem::path& file);
+void open_other_session(Studio& studio, const std::filesystem::path& file);
 /// Asks for the file first.
-void ask_for_session(Shell& shell);
+void ask_for_session(Studio& studio);
 
 /// What came from another program: a session opens, a mesh or product file begins a new session,
 /// for anything else a notice says what can be dropped.
-void take_dropped_files(Shell& shell, const std::vector<std::filesystem::path>& files);
+void take_dropped_files(Studio& studio, const std::vector<std::filesystem::path>& files);
 
 /// Why another session may not take this one's place: something in it is on no disk. A sentence;
 /// empty: it may.
@@ -30,7 +29,7 @@ std::string why_not_to_leave(const Studio& studio);
 
 /// Leaves the session by `then`, in words `doing` ("Opening car.livery") and on a button `action`
 /// ("Stop and open"). A calibration or a capture that this would stop is asked about first.
-void leave_session(Shell& shell,
+void leave_session(Studio& studio,
                    const std::string& doing,
                    const std::string& action,
                    std::function<void()> then);

@@ -24,7 +24,7 @@ namespace {
 
 using Files = std::shared_ptr<const std::vector<ReportFile>>;
 
-ReportWindowState& window_of(const Studio& studio) { return *studio.panels.report; }
+ReportWindowState& window_of(const Studio& studio) { return studio.panels.of<ReportWindowState>(); }
 
 template <typename T>
 bool is_done(const std::future<T>& future) {
@@ -226,12 +226,12 @@ void draw_inside(Studio& studio) {
 
 }  // namespace
 
-void show_report_window(Studio& studio, bool open, const std::string& drawn_with) {
+void show_report_window(Studio& studio, bool open) {
     ReportWindowState& window = window_of(studio);
     window.open = open;
     if (!open) return;
     window.request = {};
-    window.request.drawn_with = drawn_with;
+    window.request.drawn_with = studio.drawn_with;
     window.devices = nullptr;
     window.report = nullptr;
     window.chosen = "README.txt";
@@ -267,6 +267,25 @@ void draw_report_window(Studio& studio) {
         draw_inside(studio);
     }
     ImGui::End();
+}
+
+Panel report_panel() {
+    return {
+        .name = "report",
+        .place = PanelPlace::page,
+        .draw = draw_report_window,
+        .is_open = [](const Studio& s) { return window_of(s).open; },
+        .show = show_report_window,
+        .esc_closes = true,
+        .next_change_s =
+            [](const Studio& s) { return is_gathering_report(s) ? s.now_s + kProgress_s : 0.0; },
+        .describe = [](const Studio& s,
+                       MapState& state) { state["report"] = map_text(state_of_report(s)); },
+        .actions =
+            [] {
+                return std::vector{line_above(
+                    panel_action("report-problem", "report", "Help", "Report a problem…"))};
+            }};
 }
 
 }  // namespace livery

@@ -39,8 +39,8 @@ struct ReportWindowState {
     ~ReportWindowState() { stop = true; }  // which the futures then wait for, a moment
 };
 
-/// Opens it, with everything asked anew, or closes it. `drawn_with`: the window's OpenGL, in words.
-void show_report_window(Studio& studio, bool open, const std::string& drawn_with = "");
+/// Opens it, with everything asked anew, or closes it.
+void show_report_window(Studio& studio, bool open);
 
 /// Something changes in it by itself.
 bool is_gathering_report(const Studio& studio);

@@ -161,7 +161,7 @@ void draw_eye(const ImVec2& at, bool lit) {
 }
 
 void tell_why(Studio& studio, const std::string& why) {
-    SeatsPanelState& state = *studio.panels.seats;
+    SeatsPanelState& state = studio.panels.of<SeatsPanelState>();
     if (why.empty()) {
         state.why.clear();
         return;
@@ -171,7 +171,7 @@ void tell_why(Studio& studio, const std::string& why) {
 }
 
 void draw_seats(Studio& studio, const PlanFrame& plan, std::vector<EyeSeat>& seats) {
-    SeatsPanelState& state = *studio.panels.seats;
+    SeatsPanelState& state = studio.panels.of<SeatsPanelState>();
     const Document& document = studio.session.document();
     const float radius = em(0.72f);
     for (EyeSeat& seat : seats) {
@@ -220,7 +220,7 @@ void draw_seats(Studio& studio, const PlanFrame& plan, std::vector<EyeSeat>& sea
 
 /// Dragged only where it is nobody's.
 void draw_eye_in_use(Studio& studio, const PlanFrame& plan) {
-    SeatsPanelState& state = *studio.panels.seats;
+    SeatsPanelState& state = studio.panels.of<SeatsPanelState>();
     const Document& document = studio.session.document();
     const Document shown = shown_document(studio);
     if (document.eye_choice.source != EyeSource::by_hand) {
@@ -263,7 +263,7 @@ void draw_eye_in_use(Studio& studio, const PlanFrame& plan) {
 
 /// A double click where nothing is puts a seat there.
 void handle_background(Studio& studio, const PlanFrame& plan) {
-    SeatsPanelState& state = *studio.panels.seats;
+    SeatsPanelState& state = studio.panels.of<SeatsPanelState>();
     if (!ImGui::IsItemHovered()) return;
     if (ImGui::IsMouseClicked(ImGuiMouseButton_Left)) state.selected = 0;
     if (!ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) return;
@@ -282,7 +282,7 @@ void handle_background(Studio& studio, const PlanFrame& plan) {
 }
 
 PlanExtent extent_of(const Studio& studio) {
-    const SeatsPanelState& state = *studio.panels.seats;
+    const SeatsPanelState& state = studio.panels.of<SeatsPanelState>();
     const Document& document = studio.session.document();
     std::vector<glm::dvec2> points = state.outline_mm;
     for (const EyeSeat& seat : document.seats) points.push_back(in_plan(seat.eye_mm));
@@ -294,7 +294,7 @@ PlanExtent extent_of(const Studio& studio) {
 }  // namespace
 
 void take_outline(Studio& studio) {
-    SeatsPanelState& state = *studio.panels.seats;
+    SeatsPanelState& state = studio.panels.of<SeatsPanelState>();
     if (!studio.product || state.outline_of == studio.product) return;
     state.outline_of = studio.product;
     state.outline_mm = outline_from_above(studio.product->mesh);
@@ -302,7 +302,7 @@ void take_outline(Studio& studio) {
 }
 
 void draw_room_plan(Studio& studio, std::vector<EyeSeat>& seats, float width) {
-    SeatsPanelState& state = *studio.panels.seats;
+    SeatsPanelState& state = studio.panels.of<SeatsPanelState>();
     take_outline(studio);
     if (!state.dragging) state.extent = extent_of(studio);
     state.dragging = false;

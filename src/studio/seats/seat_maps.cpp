@@ -9,15 +9,12 @@
 
 #include "core/log.h"
 #include "jobs/picture.h"
-#include "studio/ballot_panel.h"
+#include "studio/drawing.h"
 #include "studio/kit/theme.h"
 #include "studio/kit/ui_map.h"
 #include "studio/kit/widgets.h"
-#include "studio/presenting/presenting.h"
-#include "studio/seats/round_eye.h"
 #include "studio/seats/seats_panel.h"
-#include "studio/window/shell.h"
-#include "studio/window/wiring.h"
+#include "studio/studio.h"
 
 namespace livery {
 
@@ -25,35 +22,35 @@ namespace {
 
 constexpr int kLegendSteps = 64;
 
-const SeatsPanelState& state_of(const Studio& studio) { return *studio.panels.seats; }
-SeatsPanelState& state_of(Studio& studio) { return *studio.panels.seats; }
+const SeatsPanelState& state_of(const Studio& studio) {
+    return studio.panels.of<SeatsPanelState>();
+}
+SeatsPanelState& state_of(Studio& studio) { return studio.panels.of<SeatsPanelState>(); }
 
 /// What somebody looks at now; the first is found first.
-std::vector<int> looks_wanted(const Shell& shell) {
-    const Studio& studio = shell.studio;
-    if (is_presenting(studio)) return looks_to_record(studio);
+std::vector<int> looks_wanted(const Studio& studio) {
+    const SeatsPanelState& state = state_of(studio);
     std::vector<int> looks;
-    if (shell.seats_open || state_of(studio).map_on_stage) looks.push_back(studio.shown_look);
-    if (!shell.seats_open && studio.panels.ballot->was_open) {
-        for (const int look : looks_under_vote(studio)) {
-            if (std::find(looks.begin(), looks.end(), look) == looks.end()) looks.push_back(look);
-        }
+    if (!is_editing_locked(studio) && (state.open || state.map_on_stage))
+        looks.push_back(studio.shown_look);
+    for (const int look : state.judged_looks) {
+        if (std::find(looks.begin(), looks.end(), look) == looks.end()) looks.push_back(look);
     }
     return looks;
 }
 
 /// Nothing while files that the looks' paints need are being read: asked again.
-std::optional<SeatErrorRequest> request_for(Shell& shell, const std::vector<int>& looks) {
-    const Document& document = shell.studio.session.document();
+std::optional<SeatErrorRequest> request_for(Studio& studio, const std::vector<int>& looks) {
+    const Document& document = studio.session.document();
     SeatErrorRequest request;
     for (const int look : looks) {
         if (!find_look(document, look)) continue;
-        SeatErrorRequest::Of of{look, scene_for(shell, document, look)};
+        SeatErrorRequest::Of of{look, scene_for(studio, document, look)};
         if (!unread_files(of.scene).empty()) return std::nullopt;
         request.looks.push_back(std::move(of));
     }
     request.seats = document.seats;
-    request.view = seat_error_view(shell.studio.setup->view);
+    request.view = seat_error_view(studio.setup->view);
     request.levels = seat_error_levels(document.quality, document.levels);
     return request;
 }
@@ -142,18 +139,7 @@ int mapped_seat(const Studio& studio) {
 
 }  // namespace
 
-std::vector<int> looks_under_vote(const Studio& studio) {
-    std::vector<int> looks;
-    for (const SessionLook& look : studio.session.document().looks) {
-        const auto& chosen = studio.panels.ballot->chosen_looks;
-        const auto found = chosen.find(look.id);
-        if (found == chosen.end() || found->second) looks.push_back(look.id);
-    }
-    return looks;
-}
-
-void step_seat_errors(Shell& shell) {
-    Studio& studio = shell.studio;
+void step_seat_errors(Studio& studio) {
     SeatsPanelState& state = state_of(studio);
     if (studio.session.document().seats.empty()) {
         // Nothing of it is kept for those who have no seats.
@@ -162,12 +148,11 @@ void step_seat_errors(Shell& shell) {
         return;
     }
     if (state.thread) state.results = state.thread->newest();
-    record_seat_errors(studio);
     if (!studio.setup || studio.opening) return;
-    SeatErrorKey key{studio.session.revision(), looks_wanted(shell), studio.setup};
+    SeatErrorKey key{studio.session.revision(), looks_wanted(studio), studio.setup};
     if (key.looks.empty() || state.asked == key) return;
     try {
-        auto request = request_for(shell, key.looks);
+        auto request = request_for(studio, key.looks);
         if (!request || request->looks.empty()) return;
         state.asked = std::move(key);
         request->number = ++state.number;
@@ -253,7 +238,7 @@ void draw_seat_map(Studio& studio, const StageFrame& picture, const StageFrame& 
     name_rectangle("seat-map", picture.x, picture.y, picture.width, picture.height);
 }
 
-void draw_seats_before_vote(Studio& studio) {
+void draw_seats_before_vote(Studio& studio, const std::vector<int>& looks) {
     const Document& document = studio.session.document();
     const std::string whose = in_words(document.seats, document.eye_choice);
     if (document.seats.empty()) {
@@ -264,7 +249,7 @@ void draw_seats_before_vote(Studio& studio) {
         ImGui::TextWrapped("%s", ("The eye is " + whose + ".").c_str());
         name_last_item("ballot:eye");
     }
-    if (ImGui::Button("Seats in the room…", {-FLT_MIN, 0.0f})) studio.panels.seats->wanted = true;
+    if (ImGui::Button("Seats in the room…", {-FLT_MIN, 0.0f})) show_panel(studio, "seats");
     name_last_item("ballot:seats");
     tooltip("Where people sit, whose eye highlights are drawn for, and what the others miss.");
     if (document.seats.empty()) return;
@@ -273,7 +258,7 @@ void draw_seats_before_vote(Studio& studio) {
     }
     const SeatsPanelState& state = state_of(studio);
     if (!state.results || state.results->number != state.number) return;
-    const auto all = worst_looks(*state.results, document.seats, looks_under_vote(studio));
+    const auto all = worst_looks(*state.results, document.seats, looks);
     for (const SeatSees& sees : all) {
         const std::string words = in_words(sees);
         is_fair(sees.error) ? dim_text(words) : warning_text(words);

@@ -7,15 +7,14 @@
 #include <vector>
 
 #include "live/seat_error_thread.h"
-#include "studio/stage_words.h"
 #include "studio/studio.h"
 
 namespace livery {
 
-struct Shell;
+struct Studio;
 
 /// Once a frame of the window: takes over what is new and asks for what is looked at.
-void step_seat_errors(Shell& shell);
+void step_seat_errors(Studio& studio);
 /// Before the window's threads end.
 void stop_seat_errors(Studio& studio);
 
@@ -26,9 +25,6 @@ std::optional<double> seat_errors_progress(const Studio& studio);
 
 /// All that was asked for of the session as it is, is found.
 bool seat_errors_found(const Studio& studio);
-
-/// The looks that are ticked for a vote, in their order.
-std::vector<int> looks_under_vote(const Studio& studio);
 
 /// What a seat misses of the look where it misses most.
 struct SeatSees {
@@ -51,7 +47,8 @@ void show_seat_map(Studio& studio, bool shown);
 glm::ivec2 seat_map_size(const Studio& studio);  ///< 0: not found yet
 void draw_seat_map(Studio& studio, const StageFrame& picture, const StageFrame& stage);
 
-/// In the ballot panel, before *Present*: whose eye it will be, what each seat misses, a warning.
-void draw_seats_before_vote(Studio& studio);
+/// In the ballot panel, before *Present*: whose eye it will be, what each seat misses of these
+/// looks, a warning.
+void draw_seats_before_vote(Studio& studio, const std::vector<int>& looks);
 
 }  // namespace livery

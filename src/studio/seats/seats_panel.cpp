@@ -11,10 +11,8 @@
 #include "studio/kit/theme.h"
 #include "studio/kit/widgets.h"
 #include "studio/kit/words.h"
-#include "studio/presenting/presenting.h"
 #include "studio/seats/seat_maps.h"
-#include "studio/window/actions.h"
-#include "studio/window/shell.h"
+#include "studio/studio.h"
 
 namespace livery {
 
@@ -23,11 +21,11 @@ namespace {
 constexpr double kCoarseStep = 10.0, kFineStep = 0.1;  // with Shift, with Ctrl
 
 const EyeSeat* selected_seat(const Studio& studio) {
-    return find_seat(studio.session.document().seats, studio.panels.seats->selected);
+    return find_seat(studio.session.document().seats, studio.panels.of<SeatsPanelState>().selected);
 }
 
 void move_selected(Studio& studio, const glm::dvec3& by_mm) {
-    SeatsPanelState& state = *studio.panels.seats;
+    SeatsPanelState& state = studio.panels.of<SeatsPanelState>();
     take_outline(studio);
     const EyeSeat* seat = selected_seat(studio);
     if (!seat) return;
@@ -53,7 +51,7 @@ void remove_selected(Studio& studio) {
 }
 
 void add_seat(Studio& studio) {
-    SeatsPanelState& state = *studio.panels.seats;
+    SeatsPanelState& state = studio.panels.of<SeatsPanelState>();
     const Document& document = studio.session.document();
     const EyeSeat seat = next_seat(state.bounds, eye_in_use_mm(document), document.seats);
     state.selected = seat.number;
@@ -99,7 +97,7 @@ void draw_eye_choice(Studio& studio) {
 }
 
 void draw_buttons(Studio& studio) {
-    SeatsPanelState& state = *studio.panels.seats;
+    SeatsPanelState& state = studio.panels.of<SeatsPanelState>();
     const Document& document = studio.session.document();
     const float gap = ImGui::GetStyle().ItemInnerSpacing.x;
     const float half = std::floor(0.5f * (ImGui::GetContentRegionAvail().x - gap));
@@ -133,7 +131,7 @@ void draw_buttons(Studio& studio) {
 }
 
 void draw_selected(Studio& studio, std::vector<EyeSeat>& seats) {
-    SeatsPanelState& state = *studio.panels.seats;
+    SeatsPanelState& state = studio.panels.of<SeatsPanelState>();
     const auto found = std::find_if(seats.begin(), seats.end(), [&](const EyeSeat& seat) {
         return seat.number == state.selected;
     });
@@ -170,7 +168,7 @@ void draw_selected(Studio& studio, std::vector<EyeSeat>& seats) {
 }
 
 void draw_figures_row(Studio& studio, const EyeSeat& seat) {
-    SeatsPanelState& state = *studio.panels.seats;
+    SeatsPanelState& state = studio.panels.of<SeatsPanelState>();
     const SeatErrorMap* map = seat_error_of(studio, studio.shown_look, seat.number);
     ImGui::TableNextRow();
     ImGui::TableNextColumn();
@@ -195,7 +193,7 @@ void draw_figures_row(Studio& studio, const EyeSeat& seat) {
 }
 
 void draw_what_they_miss(Studio& studio) {
-    SeatsPanelState& state = *studio.panels.seats;
+    SeatsPanelState& state = studio.panels.of<SeatsPanelState>();
     const Document& document = studio.session.document();
     heading("What each seat misses");
     if (document.seats.empty()) {
@@ -241,23 +239,17 @@ void draw_what_they_miss(Studio& studio) {
     }
 }
 
-void close(Studio& studio, bool& open) {
-    stop_trying(studio);
-    show_seat_map(studio, false);
-    open = false;
-}
-
 }  // namespace
 
-void show_seats(Shell& shell, bool shown) {
-    if (shown == shell.seats_open) return;
-    if (!shown) return close(shell.studio, shell.seats_open);
-    stop_trying(shell.studio);
-    shell.seats_open = true;
+void show_seats(Studio& studio, bool shown) {
+    SeatsPanelState& state = studio.panels.of<SeatsPanelState>();
+    if (shown == state.open) return;
+    stop_trying(studio);
+    state.open = shown;
+    if (!shown) show_seat_map(studio, false);
 }
 
-bool seats_key(Shell& shell, const KeyChord& chord) {
-    Studio& studio = shell.studio;
+bool seats_key(Studio& studio, const KeyChord& chord) {
     if (!selected_seat(studio)) return false;
     const double step_mm = kSeatStep_mm * (chord.shift  ? kCoarseStep
                                            : chord.ctrl ? kFineStep
@@ -289,12 +281,12 @@ bool seats_key(Shell& shell, const KeyChord& chord) {
     }
 }
 
-void draw_seats_panel(Studio& studio, bool& open) {
-    SeatsPanelState& state = *studio.panels.seats;
+void draw_seats_panel(Studio& studio) {
+    SeatsPanelState& state = studio.panels.of<SeatsPanelState>();
     const float side = ImGui::GetFrameHeight();
     heading("Seats in the room");
     ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - side);
-    if (ImGui::Button("×##close-seats", {side, 0.0f})) close(studio, open);
+    if (ImGui::Button("×##close-seats", {side, 0.0f})) show_seats(studio, false);
     name_last_item("seats:close");
     tooltip("Back to the paints. Seats stay.");
     draw_eye_choice(studio);
@@ -314,6 +306,45 @@ void draw_seats_panel(Studio& studio, bool& open) {
     draw_selected(studio, seats);
     state.held.finish();
     draw_what_they_miss(studio);
+}
+
+namespace {
+
+bool is_seats_open(const Studio& studio) {
+    return studio.panels.of<SeatsPanelState>().open && !is_editing_locked(studio);
+}
+
+void describe_seats(const Studio& studio, MapState& state) {
+    const Document& document = studio.session.document();
+    state["seats"] = text_of(SetSeats{document.seats});
+    state["eye_of"] = text_of(UseEye{document.eye_choice});
+    state["selected_seat"] = std::to_string(studio.panels.of<SeatsPanelState>().selected);
+    state["seat_errors"] = map_text(seat_errors_found(studio));
+    state["seat_map"] = map_text(seat_map_size(studio).x > 0 && shows_seat_map(studio));
+}
+
+}  // namespace
+
+Panel seats_panel() {
+    return {.name = "seats",
+            .place = PanelPlace::column,
+            .draw = draw_seats_panel,
+            .is_open = is_seats_open,
+            .show = show_seats,
+            .step = step_seat_errors,
+            .stop = stop_seat_errors,
+            .press =
+                [](Studio& s, const KeyChord& chord, bool) {
+                    return is_seats_open(s) && seats_key(s, chord) ? EventUse::step
+                                                                   : EventUse::passed_on;
+                },
+            .esc_closes = true,
+            .describe = describe_seats,
+            .actions =
+                [] {
+                    return std::vector{
+                        panel_action("seats", "seats", "Projector", "Seats in the room…")};
+                }};
 }
 
 }  // namespace livery

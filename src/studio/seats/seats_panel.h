@@ -19,7 +19,6 @@ namespace livery {
 
 struct KeyChord;
 struct ProjectorSetup;
-struct Shell;
 struct Studio;
 
 /// What seat errors were asked for; asked anew when it changes.
@@ -31,7 +30,8 @@ struct SeatErrorKey {
 };
 
 struct SeatsPanelState {
-    bool wanted = false;              ///< a button of another panel asks for this one
+    bool open = false;
+    std::vector<int> judged_looks;    ///< that a vote asks about as well
     int selected = 0;                 ///< a seat's number; 0: none
     int arc = 5;                      ///< seats of the next arc
     Held<std::vector<EyeSeat>> held;  ///< while one is dragged or typed
@@ -58,11 +58,11 @@ struct SeatsPanelState {
 };
 
 /// Opens or closes the panel.
-void show_seats(Shell& shell, bool shown);
-/// Instead of the tabs; `open` is the caller's flag.
-void draw_seats_panel(Studio& studio, bool& open);
+void show_seats(Studio& studio, bool shown);
+/// Instead of the tabs.
+void draw_seats_panel(Studio& studio);
 /// What a key means while the panel is open and a seat is chosen; true when it meant something.
-bool seats_key(Shell& shell, const KeyChord& chord);
+bool seats_key(Studio& studio, const KeyChord& chord);
 
 /// The plan with its seats to drag, this wide; each seat is an item "plan:seat:N", the eye that is
 /// set by hand "plan:eye". `seats` are the document's, or what is held of them.

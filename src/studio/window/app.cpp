@@ -20,31 +20,24 @@
 #include "core/paths.h"
 #include "projection/desktop_watch.h"
 #include "scene/library.h"
+#include "studio/drawing.h"
+#include "studio/kit/running_window.h"
 #include "studio/kit/tab_order.h"
 #include "studio/kit/theme.h"
 #include "studio/kit/ui_map.h"
-#include "studio/light/accuracy_page.h"
-#include "studio/light/reference_tracing.h"
-#include "studio/paint/library_panel.h"
-#include "studio/paint/users_library.h"
-#include "studio/plan_panel.h"
 #include "studio/presenting/presenting.h"
 #include "studio/product/new_session.h"
 #include "studio/product/open_session.h"
-#include "studio/projector_control.h"
-#include "studio/quality_costs.h"
-#include "studio/report/report_window.h"
-#include "studio/window/actions.h"
+#include "studio/projector.h"
+#include "studio/studio.h"
+#include "studio/trace.h"
 #include "studio/window/handover.h"
 #include "studio/window/imgui_window.h"
 #include "studio/window/keys.h"
+#include "studio/window/layout.h"
 #include "studio/window/native_place.h"
-#include "studio/window/running_window.h"
-#include "studio/window/shell.h"
-#include "studio/window/shell_state.h"
-#include "studio/window/trace.h"
 #include "studio/window/window_place.h"
-#include "studio/window/wiring.h"
+#include "studio/window/window_state.h"
 
 namespace livery {
 
@@ -108,53 +101,50 @@ void tell_drawing_problems(Studio& studio) {
 }
 
 /// The earliest moment at which something on the window changes by itself.
-std::optional<double> next_change_s(Shell& shell) {
+std::optional<double> next_change_s(Studio& studio) {
     std::optional<double> next;
     const auto consider = [&](double when_s) {
         if (when_s > 0.0 && (!next || when_s < *next)) next = when_s;
     };
-    for (const Notice& notice : shell.studio.notices) consider(notice.shown_until_s);
-    consider(shell.layout_rests_at_s);
-    if (shell.studio.glowing_part) consider(shell.studio.glowing_until_s);
-    if (shell.monitor_numbers) consider(shell.monitor_numbers_until_s);
+    for (const Notice& notice : studio.notices) consider(notice.shown_until_s);
+    consider(studio.layout_rests_at_s);
+    if (studio.glowing_part) consider(studio.glowing_until_s);
+    if (studio.monitor_numbers) consider(studio.monitor_numbers_until_s);
     const ImGuiContext& g = *ImGui::GetCurrentContext();
     if (g.HoveredId != 0 && g.HoveredIdTimer < kTooltipAfter_s) {
-        consider(shell.studio.now_s + static_cast<double>(kTooltipAfter_s - g.HoveredIdTimer) +
-                 0.02);
+        consider(studio.now_s + static_cast<double>(kTooltipAfter_s - g.HoveredIdTimer) + 0.02);
     }
-    if (shell.save_again_at_s > 0.0) consider(shell.save_again_at_s);
-    consider(next_vote_change_s(shell));
-    consider(next_refinement_s(shell));
-    if (shell.studio.opening) consider(shell.studio.now_s + kOnItsWayToTheScreen_s);
-    if (shell.preview_waits_until_s > 0.0) consider(shell.preview_waits_until_s);
-    if (shell.studio.preview) {
-        const auto behind_since = behind_since_s(shell.preview_lag, shell.studio.preview->number);
+    if (studio.save_again_at_s > 0.0) consider(studio.save_again_at_s);
+    consider(next_refinement_s(studio));
+    for (const Panel& panel : all_panels()) {
+        if (panel.next_change_s) consider(panel.next_change_s(studio));
+    }
+    if (studio.opening) consider(studio.now_s + kOnItsWayToTheScreen_s);
+    if (studio.preview_waits_until_s > 0.0) consider(studio.preview_waits_until_s);
+    if (studio.preview) {
+        const auto behind_since = behind_since_s(studio.preview_lag, studio.preview->number);
         const double told_s = behind_since.value_or(0.0) + kTellsLag_s;
-        if (behind_since && told_s > shell.studio.now_s) consider(told_s);
+        if (behind_since && told_s > studio.now_s) consider(told_s);
     }
-    const double spoken_of_s = shell.frame_asked_s + kUnspokenWait_s;
-    if (spoken_of_s > shell.studio.now_s) consider(spoken_of_s);
+    const double spoken_of_s = studio.frame_asked_s + kUnspokenWait_s;
+    if (spoken_of_s > studio.now_s) consider(spoken_of_s);
     // A blinking text cursor.
-    if (ImGui::GetIO().WantTextInput) consider(shell.studio.now_s + 0.4);
+    if (ImGui::GetIO().WantTextInput) consider(studio.now_s + 0.4);
     // Progress is read, not told.
-    if (shell.studio.frames->solving() || shell.studio.bench->calibrating().running ||
-        shell.capture_open || is_tracing(shell.studio) || is_measuring_accuracy(shell.studio) ||
-        is_gathering_report(shell.studio)) {
-        consider(shell.studio.now_s + 0.25);
-    }
+    if (studio.frames->solving()) consider(studio.now_s + kProgress_s);
     return next;
 }
 
 class Desktop {
   public:
     Desktop(const DesktopOptions& options, Session session)
-        : options_(options), shell_(std::move(session)) {
-        shell_.studio.desktop = std::make_shared<DesktopWatch>(is_xwayland(), [] {
+        : options_(options), studio_(std::move(session)) {
+        studio_.desktop = std::make_shared<DesktopWatch>(is_xwayland(), [] {
             monitors_have_changed = true;
             wake_main_thread();
         });
         // Beside the making of windows, which takes as long.
-        const Document& document = shell_.studio.session.document();
+        const Document& document = studio_.session.document();
         product_ =
             std::async(std::launch::async, [name = document.product, unit = document.product_unit] {
                 return find_product(name, unit);
@@ -164,13 +154,13 @@ class Desktop {
     Desktop(const DesktopOptions& options, Handover before)
         : options_(options),
           dark_(std::move(before.dark)),
-          shell_(std::move(before.opened->session)) {
+          studio_(std::move(before.opened->session)) {
         std::promise<std::shared_ptr<const Product>> read;
         read.set_value(before.opened->product);
         product_ = read.get_future();
-        shell_.trace = std::move(before.trace);
-        shell_.studio.desktop = std::move(before.desktop);
-        shell_.black = before.black;
+        studio_.trace = std::move(before.trace);
+        studio_.desktop = std::move(before.desktop);
+        studio_.black = before.black;
         handed_out_before_ = before.handed_out;
         frames_drawn_ = before.frames_drawn;
     }
@@ -178,12 +168,12 @@ class Desktop {
     /// What to go on with; nothing: the program ends.
     std::optional<Handover> run() {
         prepare();
-        while (!shell_.next_session && !ends()) {
+        while (!studio_.next_session && !ends()) {
             wait_for_something();
             draw_frame();
         }
         std::optional<Handover> next;
-        if (shell_.next_session && !shell_.quit) next = hand_over();
+        if (studio_.next_session && !studio_.quit) next = hand_over();
         finish();
         return next;
     }
@@ -192,26 +182,26 @@ class Desktop {
     bool ends() {
         if (glfwWindowShouldClose(window_->native())) {
             glfwSetWindowShouldClose(window_->native(), GLFW_FALSE);
-            shell_.quit = true;
+            studio_.quit = true;
         }
-        if (shell_.quit && !may_quit(shell_)) shell_.quit = false;
-        return shell_.quit;
+        if (studio_.quit && !may_quit(studio_)) studio_.quit = false;
+        return studio_.quit;
     }
 
     void prepare() {
-        Studio& studio = shell_.studio;
-        if (!options_.trace.empty()) shell_.trace = std::make_shared<Trace>(options_.trace);
+        Studio& studio = studio_;
+        if (!options_.trace.empty()) studio_.trace = std::make_shared<Trace>(options_.trace);
         if (!options_.ui_map.empty()) ui_map_.emplace(options_.ui_map);
-        shell_.fixed_scale = options_.ui_scale;
+        studio_.fixed_scale = options_.ui_scale;
         studio.settings = read_user_settings();
-        restore_workspace(shell_);
-        read_monitors(shell_);
-        const WindowPlace place = first_place(shell_, options_);
+        restore_workspace(studio_);
+        read_monitors(studio_);
+        const WindowPlace place = first_place(studio_, options_);
         WindowOptions window_options;
         window_options.size_px = place.size_px;
         window_options.visible = false;
         window_ = std::make_unique<Window>(window_options);
-        shell_.window = window_.get();
+        studio_.window = window_.get();
         put_window(window_->native(), place);
         window_->make_current();
         glfwSwapInterval(0);
@@ -222,21 +212,18 @@ class Desktop {
             dropped_files.assign(paths, paths + count);
         });
         studio.product = product_.get();
-        shell_.product_bounds = bounds_of(studio.product->mesh);
+        studio_.product_bounds = bounds_of(studio.product->mesh);
         studio.picker = std::make_unique<PartPicker>(studio.product);
         studio.file_dialog = std::make_unique<FileDialog>(studio.settings);
         // What is told before the first frame is shown for as long as the rest.
         studio.now_s = now_s();
-        open_ballots(shell_);
         keep_shown_looks_valid(studio);
-        contexts_ = start_threads(shell_, *window_, options_.shading);
-        if (shell_.black) set_black(shell_, true);
-        find_presented_round(studio);
-        step_vote_mode(shell_);
+        contexts_ = start_threads(studio_, *window_, options_.shading);
+        if (studio_.black) set_black(studio_, true);
         tell_product_notes(studio);
         tell_drawing_problems(studio);
-        tell_unsaved(shell_);
-        monitors_changed(shell_);
+        tell_unsaved(studio_);
+        monitors_changed(studio_);
         glfwShowWindow(window_->native());
         if (const auto file = studio.session.file()) {
             remember_recent_session(studio.settings, *file);
@@ -246,24 +233,24 @@ class Desktop {
             });
         }
         if (!options_.new_product.empty())
-            begin_new_session(shell_, options_.new_product, options_.new_session, options_.unit);
+            begin_new_session(studio_, options_.new_product, options_.new_session, options_.unit);
         frames_to_draw_ = kFramesAfterInput;
     }
 
     /// The next session's window stands where this one does, with the same projector.
     Handover hand_over() {
         Handover next;
-        next.opened = std::move(shell_.next_session);
-        next.trace = shell_.trace;
-        next.desktop = shell_.studio.desktop;
-        next.black = shell_.black;
+        next.opened = std::move(studio_.next_session);
+        next.trace = studio_.trace;
+        next.desktop = studio_.desktop;
+        next.black = studio_.black;
         next.handed_out = imgui_->handed_out();
         next.frames_drawn = frames_drawn_;
         Session& session = next.opened->session;
         session.set_workspace(kWindowKey, text_of(place_of(window_->native())));
-        session.set_workspace(kMonitorKey, shell_.projector_monitor);
-        if (shell_.studio.projector->state() == ProjectorScreen::State::showing) {
-            next.dark = std::make_unique<DarkProjector>(shell_.projector_monitor, next.desktop);
+        session.set_workspace(kMonitorKey, studio_.projector_monitor);
+        if (studio_.projector->state() == ProjectorScreen::State::showing) {
+            next.dark = std::make_unique<DarkProjector>(studio_.projector_monitor, next.desktop);
         }
         log_line(LogLevel::info, "goes on with " + session.file().value_or("").string());
         return next;
@@ -280,7 +267,7 @@ class Desktop {
             } else {
                 glfwPollEvents();
             }
-        } else if (const auto next = next_change_s(shell_)) {
+        } else if (const auto next = next_change_s(studio_)) {
             glfwWaitEventsTimeout(std::max(0.001, *next - now_s()));
             frames_to_draw_ = 1;
         } else {
@@ -294,66 +281,65 @@ class Desktop {
             monitor_places_ = std::move(places);
         }
         if (monitors_have_changed.exchange(false)) {
-            monitors_changed(shell_);
+            monitors_changed(studio_);
             frames_to_draw_ = kFramesAfterInput;
         }
         if (!dropped_files.empty()) {
             auto files = std::exchange(dropped_files, {});
-            if (!refuse_editing(shell_.studio)) take_dropped_files(shell_, std::move(files));
+            if (!refuse_editing(studio_)) take_dropped_files(studio_, std::move(files));
             frames_to_draw_ = kFramesAfterInput;
         }
     }
 
     void draw_frame() {
-        Studio& studio = shell_.studio;
+        Studio& studio = studio_;
         const double start_s = now_s();
         studio.now_s = start_s;
         GLFWwindow* native = window_->native();
-        studio.ui_scale = static_cast<float>(
-            shell_.fixed_scale.value_or(screen_scale(native, studio.monitors) * shell_.user_scale));
+        studio.ui_scale = static_cast<float>(studio_.fixed_scale.value_or(
+            screen_scale(native, studio.monitors) * studio_.user_scale));
         imgui_->use_scale(studio.ui_scale);
         limit_size();
         if (asked_for_.exchange(false)) come_to_the_front();
         const auto frame_before = studio.frame;  // Until this frame is drawn: textures are read.
         const auto preview_before = studio.preview;
-        take_results(shell_);
+        take_results(studio_);
         if (studio.opening && has_opened()) {
             studio.opening = false;
             dark_.reset();
             give_icon(studio, native);
         }
-        save_again_now_and_then(shell_);
-        if (studio.frame && remember_costs(studio.panels.plan->measured, *studio.frame)) {
-            scale_costs(studio, studio.frame->plan);
-        }
-        if (shell_.monitor_numbers && studio.now_s >= shell_.monitor_numbers_until_s) {
-            shell_.monitor_numbers.reset();
+        save_again_now_and_then(studio_);
+        if (studio_.monitor_numbers && studio.now_s >= studio_.monitor_numbers_until_s) {
+            studio_.monitor_numbers.reset();
         }
         const std::uint64_t revision_before = studio.session.revision();
         begin_trials(studio);
         start_naming_items(ui_map_.has_value());
         const bool had_input = imgui_->has_input();
-        shell_.input_at = imgui_->begin_frame(
-            [this](const InputEvent& event) { return handle_key(shell_, event); });
+        studio_.input_at = imgui_->begin_frame(
+            [this](const InputEvent& event) { return handle_key(studio_, event); });
         if (had_input) {
-            shell_.trace->write("input", 0, {}, shell_.input_at);
+            studio_.trace->write("input", 0, {}, studio_.input_at);
             tell_unrest();
         }
         draw_everything();
         end_trials(studio);
-        if (const int step = std::exchange(shell_.tab_step, 0)) move_focus(step);
+        if (const int step = std::exchange(studio_.tab_step, 0)) move_focus(step);
         imgui_->end_frame();
         if (studio.session.revision() != revision_before) {
-            shell_.trace->write("commit", studio.session.revision());
+            studio_.trace->write("commit", studio.session.revision());
             frames_to_draw_ = std::max(frames_to_draw_, 2);
         }
         // Before anything is drawn here: the mock-up comes first.
-        ask_for_changes(shell_);
+        // The program was started with a mesh: what stands behind its page may never be wanted.
+        const bool only_page = is_open(studio, "new-session") && !studio.asked_frame;
+        ask_for_changes(studio_, !only_page);
         // Input that waits is taken first, so that it does not wait for pictures of what was
         // before.
         // Where one processor draws everything, the mock-up has it first.
-        const bool mock_up_first = shell_.draws_in_software && !preview_goes_first(shell_) &&
-                                   (studio.opening || is_frame_under_way(shell_));
+        const bool mock_up_first = studio_.draws_in_software && !preview_goes_first(studio_) &&
+                                   (studio.opening || is_frame_under_way(studio_));
         const bool patient = last_drawn_s_ == 0.0 ? studio.opening && !studio.frame
                                                   : start_s - last_drawn_s_ < kLongestFrame_s;
         gave_way_ = (imgui_->has_input() || mock_up_first) && patient;
@@ -361,9 +347,9 @@ class Desktop {
         imgui_->draw();
         --frames_to_draw_;
         last_drawn_s_ = now_s();
-        shell_.frame_ms = 1000.0 * (last_drawn_s_ - start_s);
-        if (shell_.window_must_move) move_off_projector(shell_, native);
-        remember_workspace(shell_, text_of(place_of(native)), false);
+        studio_.frame_ms = 1000.0 * (last_drawn_s_ - start_s);
+        if (studio_.window_must_move) move_off_projector(studio_, native);
+        remember_workspace(studio_, text_of(place_of(native)), false);
         write_ui_map();
     }
 
@@ -371,8 +357,8 @@ class Desktop {
     void limit_size() {
         GLFWwindow* native = window_->native();
         const glm::ivec2 position = place_of(native).position;
-        glm::ivec2 least(glm::vec2(kLeastSize_px) * shell_.studio.ui_scale);
-        for (const Monitor& m : shell_.studio.monitors) {
+        glm::ivec2 least(glm::vec2(kLeastSize_px) * studio_.ui_scale);
+        for (const Monitor& m : studio_.monitors) {
             const bool here = position.x >= m.x && position.y >= m.y &&
                               position.x < m.x + m.width && position.y < m.y + m.height;
             if (here) least = glm::min(least, glm::ivec2(m.width, m.height));
@@ -393,29 +379,28 @@ class Desktop {
 
     /// The mock-up's first picture is on the projector, or takes too long.
     bool has_opened() const {
-        const Studio& studio = shell_.studio;
-        if (preview_goes_first(shell_)) return false;
-        const double limit_s = shell_.opened_s + kLongestOpening_s;
+        const Studio& studio = studio_;
+        if (preview_goes_first(studio_)) return false;
+        const double limit_s = studio_.opened_s + kLongestOpening_s;
         if (!studio.frame) return studio.now_s >= limit_s;
         const double shown_s = seconds_of(studio.frame->done_at) + kOnItsWayToTheScreen_s;
         return studio.now_s >= std::min(limit_s, shown_s);
     }
 
     void draw_everything() {
-        draw_layout(shell_);
-        draw_notices(shell_);
-        draw_help(shell_);
-        draw_accuracy_page(shell_.studio);
-        draw_report_window(shell_.studio);
-        draw_new_session(shell_);
-        shell_.studio.file_dialog->draw();
-        if (!shell_.studio.file_dialog->is_open()) draw_question(shell_.question);
+        draw_layout(studio_);
+        draw_notices(studio_);
+        for (const Panel& panel : all_panels()) {
+            if (panel.place == PanelPlace::page) panel.draw(studio_);
+        }
+        studio_.file_dialog->draw();
+        if (!studio_.file_dialog->is_open()) draw_question(studio_.question);
     }
 
     void write_ui_map() {
         if (!ui_map_) return;
         const WindowPlace place = place_of(window_->native());
-        MapState state = state_of_shell(shell_);
+        MapState state = state_of_window(studio_);
         state["clicks"] = std::to_string(imgui_->handed_out().clicks);
         state["notches"] = std::to_string(imgui_->handed_out().notches);
         state["keys"] = std::to_string(imgui_->handed_out().keys);
@@ -437,17 +422,14 @@ class Desktop {
     void finish() {
         log_line(LogLevel::info, "closing");
         running_window_.reset();
-        remember_workspace(shell_, text_of(place_of(window_->native())), true);
+        remember_workspace(studio_, text_of(place_of(window_->native())), true);
         glfwSetMonitorCallback(nullptr);
         glfwHideWindow(window_->native());
         window_->make_current();
-        shell_.monitor_numbers.reset();
-        stop_threads(shell_);
-        shell_.stage.photograph_texture = {};
-        shell_.closed_page.reset();
-        shell_.new_session.reset();
-        keep_scaled_costs(shell_.studio);
-        shell_.studio.panels = PanelStates();  // their textures go
+        studio_.monitor_numbers.reset();
+        stop_threads(studio_);
+        studio_.stage.photograph_texture = {};
+        studio_.panels.clear();  // their textures go
         imgui_.reset();
     }
 
@@ -457,7 +439,7 @@ class Desktop {
     std::unique_ptr<Window> window_;
     Contexts contexts_;
     std::unique_ptr<ImGuiWindow> imgui_;
-    Shell shell_;
+    Studio studio_;
     std::optional<UiMapFile> ui_map_;
     struct Mapped {
         ItemPlaces items;

@@ -8,8 +8,8 @@
 #include "gl/window.h"
 #include "projection/projector_screen.h"
 #include "studio/product/new_session.h"
+#include "studio/trace.h"
 #include "studio/window/imgui_window.h"
-#include "studio/window/trace.h"
 
 namespace livery {
 
@@ -30,7 +30,7 @@ struct DarkProjector {
 struct Handover {
     std::shared_ptr<OpenedSession> opened;
     std::unique_ptr<DarkProjector> dark;  ///< none: there was no projector
-    std::shared_ptr<Trace> trace;         ///< shared as in the shell
+    std::shared_ptr<Trace> trace;         ///< shared as in the studio
     std::shared_ptr<DesktopWatch> desktop;
     bool black = false;                 ///< it was so before
     ImGuiWindow::HandedOut handed_out;  ///< counts go on: who drives the program waits for them

@@ -11,7 +11,7 @@
 
 #include "studio/kit/imgui_versions.h"
 #include "studio/kit/theme.h"
-#include "studio/window/trace.h"
+#include "studio/trace.h"
 
 namespace livery {
 

@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "gl/window.h"
-#include "studio/window/input_queue.h"
+#include "studio/kit/input_queue.h"
 
 namespace livery {
 

@@ -6,13 +6,8 @@
 #include <imgui.h>
 #include <imgui_internal.h>
 
-#include "studio/nudge/nudge_panel.h"
-#include "studio/paint/library_panel.h"
-#include "studio/paint/users_library.h"
-#include "studio/presenting/presenting.h"
-#include "studio/seats/seats_panel.h"
-#include "studio/window/actions.h"
-#include "studio/window/shell.h"
+#include "studio/studio.h"
+#include "studio/users_library.h"
 
 namespace livery {
 
@@ -21,28 +16,28 @@ namespace {
 // Not Caps Lock and Num Lock.
 constexpr int kRealModifiers = GLFW_MOD_CONTROL | GLFW_MOD_SHIFT | GLFW_MOD_ALT | GLFW_MOD_SUPER;
 
-KeyboardOwner keyboard_owner(const Shell& shell) {
+KeyboardOwner keyboard_owner(const Studio& studio) {
     const ImGuiContext& g = *ImGui::GetCurrentContext();
     KeyboardOwner owner;
     // As of the last frame; WantTextInput is older by one.
     owner.text_field = g.ActiveId != 0 && g.ActiveId == g.InputTextState.ID;
     owner.dialog = ImGui::GetTopMostPopupModal() != nullptr;
-    owner.ballot_letters = ballot_letters(shell.studio);
-    owner.keyboard_navigation =
-        g.IO.NavVisible || g.OpenPopupStack.Size > 0 || shell.studio.panels.library->owns_arrows;
+    owner.ballot_letters = letters_taken(studio);
+    owner.keyboard_navigation = g.IO.NavVisible || g.OpenPopupStack.Size > 0 ||
+                                studio.arrows_taken_in_frame == ImGui::GetFrameCount();
     return owner;
 }
 
 }  // namespace
 
-EventUse handle_key(Shell& shell, const InputEvent& event) {
+EventUse handle_key(Studio& studio, const InputEvent& event) {
     if (event.kind == InputEvent::Kind::focus) {
-        if (!event.down) shell.studio.showing_b = false;
-        if (event.down) refresh_library(shell.studio);
+        if (!event.down) studio.showing_b = false;
+        if (event.down) refresh_library(studio);
         return EventUse::passed_on;
     }
     if (event.code == GLFW_KEY_TAB && (event.modifiers & ~GLFW_MOD_SHIFT & kRealModifiers) == 0) {
-        if (event.down) shell.tab_step = (event.modifiers & GLFW_MOD_SHIFT) != 0 ? -1 : 1;
+        if (event.down) studio.tab_step = (event.modifiers & GLFW_MOD_SHIFT) != 0 ? -1 : 1;
         return EventUse::command;
     }
     const KeyChord chord{event.code,
@@ -55,18 +50,19 @@ EventUse handle_key(Shell& shell, const InputEvent& event) {
                 std::any_of(action.chords.begin(), action.chords.end(), [&](const KeyChord& c) {
                     return c.key == event.code;
                 });
-            if (action.released && its_key) action.released(shell);
+            if (action.released && its_key) action.released(studio);
         }
         return EventUse::passed_on;
     }
     if ((event.modifiers & (GLFW_MOD_ALT | GLFW_MOD_SUPER)) != 0) return EventUse::passed_on;
-    const KeyboardOwner owner = keyboard_owner(shell);
+    const KeyboardOwner owner = keyboard_owner(studio);
     const bool writes =
         owner.text_field || owner.dialog || ImGui::GetCurrentContext()->OpenPopupStack.Size > 0;
-    if (shell.nudge_open && !writes && nudge_key(shell, chord)) return EventUse::step;
-    const bool seats = shell.seats_open && !is_presenting(shell.studio);
-    if (seats && !writes && seats_key(shell, chord)) return EventUse::step;
-    if (!writes && vote_mode_key(shell, chord, event.repeated)) return EventUse::command;
+    for (const Panel& panel : all_panels()) {
+        if (writes || !panel.press) continue;
+        const EventUse use = panel.press(studio, chord, event.repeated);
+        if (use != EventUse::passed_on) return use;
+    }
     const Action* action = action_for(chord, owner);
     // Dear ImGui has a meaning of its own for Tab and would use it for its list of windows.
     if (!action && chord.key == GLFW_KEY_TAB) return EventUse::command;
@@ -82,13 +78,9 @@ EventUse handle_key(Shell& shell, const InputEvent& event) {
         g.NavLayer = ImGuiNavLayer_Main;
         return EventUse::command;
     }
-    const bool repeats = action->id == "undo" || action->id == "redo" || action->id == "larger" ||
-                         action->id == "smaller" || action->id == "next-look" ||
-                         action->id == "previous-look" || action->id == "next-tab" ||
-                         action->id == "previous-tab";
-    if (event.repeated && !repeats) return EventUse::step;
-    run_action(*action, shell);
-    if (action->id != "give-up") return repeats ? EventUse::step : EventUse::command;
+    if (event.repeated && !action->repeats) return EventUse::step;
+    run_action(*action, studio);
+    if (action->id != "give-up") return action->repeats ? EventUse::step : EventUse::command;
     if (ImGui::IsAnyItemActive()) ImGui::ClearActiveID();
     return EventUse::passed_on;  // Panels may have something of their own to give up.
 }

@@ -1,62 +1,56 @@
 // Menu bar, three columns with lines between that can be dragged, and two bars below.
+#include "studio/window/layout.h"
+
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <filesystem>
 #include <string>
 #include <utility>
 
+#include <GLFW/glfw3.h>
 #include <fmt/format.h>
 #include <imgui.h>
 
-#include "studio/ballot_panel.h"
-#include "studio/calibration_panel.h"
-#include "studio/capture/capture_panel.h"
 #include "studio/kit/theme.h"
-#include "studio/nudge/nudge_panel.h"
-#include "studio/paint/library_panel.h"
-#include "studio/paint/swatches.h"
 #include "studio/presenting/presenting.h"
 #include "studio/product/open_session.h"
-#include "studio/seats/seats_panel.h"
-#include "studio/window/actions.h"
-#include "studio/window/shell.h"
+#include "studio/studio.h"
 
 namespace livery {
 
 namespace {
 
 /// Its first key, or its second with Ctrl where plain letters mean something else now.
-std::string key_in_menu(const Action& action, const Shell& shell) {
+std::string key_in_menu(const Action& action, const Studio& studio) {
     if (action.chords.empty()) return "";
-    const bool letters = is_presenting(shell.studio) || ballot_letters(shell.studio) > 0;
+    const bool letters = is_editing_locked(studio) || letters_taken(studio) > 0;
     const bool other =
         letters && action.chords.size() > 1 && !action.chords[0].ctrl && action.chords[1].ctrl;
     return text_of(action.chords[other ? 1 : 0]);
 }
 
-void draw_menu_entry(const Action& action, Shell& shell) {
+void draw_menu_entry(const Action& action, Studio& studio) {
     if (action.starts_group) ImGui::Separator();
     std::string label = action.label;
     if (action.detail) {
-        if (const std::string detail = action.detail(shell); !detail.empty())
+        if (const std::string detail = action.detail(studio); !detail.empty())
             label += ": " + detail;
     }
-    const std::string keys = key_in_menu(action, shell);
-    const bool checked = action.checked && action.checked(shell);
-    if (ImGui::MenuItem(label.c_str(), keys.c_str(), checked, is_enabled(action, shell))) {
-        run_action(action, shell);
+    const std::string keys = key_in_menu(action, studio);
+    const bool checked = action.checked && action.checked(studio);
+    if (ImGui::MenuItem(label.c_str(), keys.c_str(), checked, is_enabled(action, studio))) {
+        run_action(action, studio);
     }
     name_last_item("menu:" + action.id);
 }
 
 /// Those that are gone stay in the list, in grey: a memory stick may come back.
-void draw_recent_sessions(Shell& shell) {
-    const auto files = recent_sessions(shell.studio.settings);
+void draw_recent_sessions(Studio& studio) {
+    const auto files = recent_sessions(studio.settings);
     const bool open = ImGui::BeginMenu("Recent", !files.empty());
     name_last_item("menu:recent");
     if (!open) return;
-    const auto shown = shell.studio.session.file();
+    const auto shown = studio.session.file();
     for (std::size_t k = 0; k < files.size(); ++k) {
         std::error_code error;
         const bool there = std::filesystem::is_regular_file(files[k], error);
@@ -64,7 +58,7 @@ void draw_recent_sessions(Shell& shell) {
         const std::string where =
             there ? files[k].parent_path().filename().string() : std::string("not there");
         if (ImGui::MenuItem(label.c_str(), where.c_str(), shown == files[k], there)) {
-            open_other_session(shell, files[k]);
+            open_other_session(studio, files[k]);
         }
         name_last_item("recent:" + files[k].stem().string());
         tooltip(files[k].string());
@@ -98,66 +92,42 @@ void draw_splitter(
     ImGui::SameLine(0.0f, 0.0f);
 }
 
-void draw_left_column(Shell& shell) {
-    draw_looks_panel(shell.studio);
-    ImGui::Dummy({0.0f, em(0.4f)});
-    draw_parts_panel(shell.studio);
+void draw_left_column(Studio& studio) {
+    bool first = true;
+    for (const Panel& panel : all_panels()) {
+        if (panel.place != PanelPlace::left) continue;
+        if (!std::exchange(first, false)) ImGui::Dummy({0.0f, em(0.4f)});
+        panel.draw(studio);
+    }
 }
 
-void draw_right_column(Shell& shell) {
-    struct Tab {
-        const char* label;
-        void (*draw)(Studio&);
-    };
-    static constexpr std::array<Tab, kTabs> tabs = {{{"Paints", draw_library_panel},
-                                                     {"Paint", draw_paint_panel},
-                                                     {"Artwork", draw_artwork_panel},
-                                                     {"Light", draw_lighting_panel},
-                                                     {"Calibrate", draw_calibration_panel},
-                                                     {"Frame", draw_plan_panel}}};
-    take_swatches(shell.studio);
-    if (std::exchange(shell.studio.panels.calibration->capture_wanted, false))
-        show_capture(shell, true);
-    if (std::exchange(shell.studio.panels.calibration->nudge_wanted, false))
-        show_nudge(shell, true);
-    if (shell.capture_open) {
-        shell.studio.panels.library->owns_arrows = false;
-        return draw_capture_panel(shell);
+void draw_right_column(Studio& studio) {
+    for (const Panel& panel : all_panels()) {
+        if (panel.place == PanelPlace::column && panel.is_open(studio)) return panel.draw(studio);
     }
-    if (shell.nudge_open) {
-        shell.studio.panels.library->owns_arrows = false;
-        return draw_nudge_panel(shell);
-    }
-    if (std::exchange(shell.studio.panels.seats->wanted, false)) show_seats(shell, true);
-    if (shell.seats_open && !is_presenting(shell.studio)) {
-        shell.studio.panels.library->owns_arrows = false;
-        return draw_seats_panel(shell.studio, shell.seats_open);
-    }
-    if (shell.ballots_open) {
-        shell.studio.panels.library->owns_arrows = false;
-        return draw_ballot_panel(shell.studio, shell.ballots_open);
-    }
-    shell.studio.panels.ballot->was_open = false;
     if (!ImGui::BeginTabBar("tabs", ImGuiTabBarFlags_FittingPolicyResizeDown)) return;
-    for (std::size_t i = 0; i < tabs.size(); ++i) {
-        const bool to_open = shell.tab_to_open == static_cast<int>(i);
+    for (const Panel& panel : all_panels()) {
+        if (panel.place != PanelPlace::tab) continue;
         const bool open = ImGui::BeginTabItem(
-            tabs[i].label, nullptr, to_open ? ImGuiTabItemFlags_SetSelected : 0);
-        name_last_item(std::string("tab:") + tabs[i].label);
-        if (!open) {
-            if (tabs[i].draw == draw_library_panel) {
-                shell.studio.panels.library->owns_arrows = false;
-            }
-            continue;
-        }
-        shell.open_tab = static_cast<int>(i);
-        ImGui::BeginChild(tabs[i].label);
-        tabs[i].draw(shell.studio);
+            panel.name,
+            nullptr,
+            studio.tab_to_open == panel.name ? ImGuiTabItemFlags_SetSelected : 0);
+        name_last_item(std::string("tab:") + panel.name);
+        if (!open) continue;
+        studio.open_tab = panel.name;
+        ImGui::BeginChild(panel.name);
+        panel.draw(studio);
         ImGui::EndChild();
         ImGui::EndTabItem();
     }
-    shell.tab_to_open.reset();
+    studio.tab_to_open.clear();
     ImGui::EndTabBar();
+}
+
+void draw_middle_column(Studio& studio) {
+    for (const Panel& panel : all_panels()) {
+        if (panel.draw_stage && panel.draw_stage(studio)) return;
+    }
 }
 
 /// Regions touch; what is inside them does not.
@@ -168,43 +138,35 @@ void with_spacing(ImVec2 spacing, Draw draw) {
     ImGui::PopStyleVar();
 }
 
-void draw_columns(Shell& shell, float height, ImVec2 spacing) {
+void draw_columns(Studio& studio, float height, ImVec2 spacing) {
     const float width = ImGui::GetContentRegionAvail().x, unit = em(1.0f);
     const float splitters = 2.0f * std::max(3.0f, em(0.3f));
     // The picture keeps at least a third, however narrow the window.
     const float share = 0.66f * width / unit;
-    const float squeeze = std::min(1.0f, share / (shell.left_width_em + shell.right_width_em));
-    const float left = std::floor(shell.left_width_em * squeeze * unit);
-    const float right = std::floor(shell.right_width_em * squeeze * unit);
+    const float squeeze = std::min(1.0f, share / (studio.left_width_em + studio.right_width_em));
+    const float left = std::floor(studio.left_width_em * squeeze * unit);
+    const float right = std::floor(studio.right_width_em * squeeze * unit);
     begin_region("left", {left, height});
-    with_spacing(spacing, [&] { draw_left_column(shell); });
+    with_spacing(spacing, [&] { draw_left_column(studio); });
     ImGui::EndChild();
-    draw_splitter("left-splitter", shell.left_width_em, 1.0f, 11.0f, 30.0f, height);
+    draw_splitter("left-splitter", studio.left_width_em, 1.0f, 11.0f, 30.0f, height);
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {em(0.45f), em(0.45f)});
     begin_region("middle",
                  {width - left - right - splitters, height},
                  false,
                  ImGuiWindowFlags_NoScrollWithMouse | ImGuiWindowFlags_NoScrollbar);
     ImGui::PopStyleVar();
-    with_spacing(spacing, [&] {
-        if (is_presenting(shell.studio)) {
-            draw_vote_stage(shell);
-        } else if (shell.capture_open) {
-            draw_capture_stage(shell);
-        } else {
-            draw_stage(shell);
-        }
-    });
+    with_spacing(spacing, [&] { draw_middle_column(studio); });
     ImGui::EndChild();
-    draw_splitter("right-splitter", shell.right_width_em, -1.0f, 17.0f, 40.0f, height);
+    draw_splitter("right-splitter", studio.right_width_em, -1.0f, 17.0f, 40.0f, height);
     begin_region("right", {right, height});
-    with_spacing(spacing, [&] { draw_right_column(shell); });
+    with_spacing(spacing, [&] { draw_right_column(studio); });
     ImGui::EndChild();
 }
 
 }  // namespace
 
-void draw_menu_bar(Shell& shell) {
+void draw_menu_bar(Studio& studio) {
     if (!ImGui::BeginMenuBar()) return;
     for (const char* menu : {"File", "Edit", "View", "Look", "Projector", "Help"}) {
         const bool open = ImGui::BeginMenu(menu);
@@ -212,21 +174,21 @@ void draw_menu_bar(Shell& shell) {
         if (!open) continue;
         for (const Action& action : all_actions()) {
             if (action.menu != menu) continue;
-            draw_menu_entry(action, shell);
-            if (action.id == "open-session") draw_recent_sessions(shell);
+            draw_menu_entry(action, studio);
+            if (action.id == "open-session") draw_recent_sessions(studio);
         }
         ImGui::EndMenu();
     }
-    if (shell.studio.session.save_problem()) {
+    if (studio.session.save_problem()) {
         const char* text = "NOT SAVED";
         ImGui::SameLine(ImGui::GetWindowWidth() - ImGui::CalcTextSize(text).x - em(1.0f));
         ImGui::TextColored(colours::error, "%s", text);
-        tooltip(*shell.studio.session.save_problem());
+        tooltip(*studio.session.save_problem());
     }
     ImGui::EndMenuBar();
 }
 
-void draw_layout(Shell& shell) {
+void draw_layout(Studio& studio) {
     const ImGuiViewport& viewport = *ImGui::GetMainViewport();
     ImGui::SetNextWindowPos(viewport.Pos);
     ImGui::SetNextWindowSize(viewport.Size);
@@ -241,33 +203,78 @@ void draw_layout(Shell& shell) {
                      ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoScrollWithMouse);
     ImGui::PopStyleColor();
     ImGui::PopStyleVar(3);
-    draw_menu_bar(shell);
+    draw_menu_bar(studio);
     const ImVec2 spacing = ImGui::GetStyle().ItemSpacing;
     ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, {0.0f, 0.0f});
     const float gap = std::max(2.0f, em(0.18f));
     const float bar = em(3.5f), status = em(1.75f);
-    if (has_vote_bar(shell)) {
+    if (has_vote_bar(studio)) {
         ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0.0f, 0.0f});
         begin_region("vote-bar", {0.0f, em(4.0f)}, true, ImGuiWindowFlags_NoScrollbar);
         ImGui::PopStyleVar();
-        with_spacing(spacing, [&] { draw_vote_bar(shell); });
+        with_spacing(spacing, [&] { draw_vote_bar(studio); });
         ImGui::EndChild();
     }
     const float columns = ImGui::GetContentRegionAvail().y - bar - status - gap;
-    draw_columns(shell, columns, spacing);
+    draw_columns(studio, columns, spacing);
     ImGui::Dummy({0.0f, gap});
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {em(0.7f), em(0.4f)});
     begin_region("bar", {0.0f, bar}, true, ImGuiWindowFlags_NoScrollbar);
     ImGui::PopStyleVar();
-    with_spacing(spacing, [&] { draw_projector_bar(shell); });
+    with_spacing(spacing, [&] { draw_projector_bar(studio); });
     ImGui::EndChild();
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {em(0.7f), em(0.25f)});
     begin_region("status", {0.0f, status}, false, ImGuiWindowFlags_NoScrollbar);
     ImGui::PopStyleVar();
-    with_spacing(spacing, [&] { draw_status_line(shell); });
+    with_spacing(spacing, [&] { draw_status_line(studio); });
     ImGui::EndChild();
     ImGui::PopStyleVar();
     ImGui::End();
 }
+
+namespace {
+
+std::vector<std::string> tabs() {
+    std::vector<std::string> names;
+    for (const Panel& panel : all_panels()) {
+        if (panel.place == PanelPlace::tab) names.emplace_back(panel.name);
+    }
+    return names;
+}
+
+int place_of_open_tab(const Studio& studio) {
+    const auto names = tabs();
+    const auto found = std::find(names.begin(), names.end(), studio.open_tab);
+    return found == names.end() ? 0 : static_cast<int>(found - names.begin());
+}
+
+template <int step>
+void turn_tabs(Studio& studio) {
+    const auto names = tabs();
+    const int count = static_cast<int>(names.size());
+    studio.tab_to_open =
+        names[static_cast<std::size_t>((place_of_open_tab(studio) + step + count) % count)];
+}
+
+std::vector<Action> tab_actions() {
+    return {repeating(line_above({"next-tab",
+                                  "View",
+                                  "Next tab",
+                                  {ctrl(GLFW_KEY_TAB), ctrl(GLFW_KEY_PAGE_DOWN)},
+                                  turn_tabs<1>})),
+            repeating({"previous-tab",
+                       "View",
+                       "Previous tab",
+                       {ctrl_shift(GLFW_KEY_TAB), ctrl(GLFW_KEY_PAGE_UP)},
+                       turn_tabs<-1>})};
+}
+
+void describe_tabs(const Studio& studio, MapState& state) {
+    state["open_tab"] = std::to_string(place_of_open_tab(studio));
+}
+
+}  // namespace
+
+Panel tabs_panel() { return {.name = "tabs", .describe = describe_tabs, .actions = tab_actions}; }
 
 }  // namespace livery

@@ -14,13 +14,13 @@
 #include "core/paths.h"
 #include "studio/kit/background.h"
 #include "studio/studio.h"
-#include "studio/window/shell_state.h"
+#include "studio/window/window_state.h"
 
 namespace livery {
 
 namespace {
 
-glm::ivec2 least_size(const Shell& shell,
+glm::ivec2 least_size(const Studio& studio,
                       const std::vector<Monitor>& monitors,
                       const glm::ivec2& position) {
     double scale = 1.0;
@@ -30,7 +30,7 @@ glm::ivec2 least_size(const Shell& shell,
             scale = default_scale(1.0f, {m.width, m.height});
         }
     }
-    scale = shell.fixed_scale.value_or(scale * shell.user_scale);
+    scale = studio.fixed_scale.value_or(scale * studio.user_scale);
     return glm::ivec2(glm::dvec2(kLeastSize_px) * scale);
 }
 
@@ -72,11 +72,11 @@ WindowPlace place_of(GLFWwindow* window) {
     return place;
 }
 
-WindowPlace first_place(const Shell& shell, const DesktopOptions& options) {
-    const auto& monitors = shell.studio.monitors;
-    const auto remembered = shell.studio.session.workspace().find(kWindowKey);
+WindowPlace first_place(const Studio& studio, const DesktopOptions& options) {
+    const auto& monitors = studio.monitors;
+    const auto remembered = studio.session.workspace().find(kWindowKey);
     std::optional<WindowPlace> place;
-    if (remembered != shell.studio.session.workspace().end()) {
+    if (remembered != studio.session.workspace().end()) {
         place = parse_window_place(remembered->second);
     }
     if (!place) {
@@ -92,12 +92,12 @@ WindowPlace first_place(const Shell& shell, const DesktopOptions& options) {
         }
     }
     // It may have been left on a screen with larger pixels.
-    place->size_px = glm::max(place->size_px, least_size(shell, monitors, place->position));
+    place->size_px = glm::max(place->size_px, least_size(studio, monitors, place->position));
     if (options.size_px) {
         place->size_px = *options.size_px;
         place->maximised = false;
     }
-    return place_beside_projector(*place, monitors, shell.projector_monitor).value_or(*place);
+    return place_beside_projector(*place, monitors, studio.projector_monitor).value_or(*place);
 }
 
 void put_window(GLFWwindow* window, const WindowPlace& place) {
@@ -106,11 +106,11 @@ void put_window(GLFWwindow* window, const WindowPlace& place) {
     if (place.maximised) glfwMaximizeWindow(window);
 }
 
-void move_off_projector(Shell& shell, GLFWwindow* window) {
-    shell.window_must_move = false;
+void move_off_projector(Studio& studio, GLFWwindow* window) {
+    studio.window_must_move = false;
     const WindowPlace now = place_of(window);
-    if (!must_move(now, shell.studio.monitors, shell.projector_monitor)) return;
-    const auto place = place_beside_projector(now, shell.studio.monitors, shell.projector_monitor);
+    if (!must_move(now, studio.monitors, studio.projector_monitor)) return;
+    const auto place = place_beside_projector(now, studio.monitors, studio.projector_monitor);
     if (!place || *place == now) return;
     if (now.maximised) glfwRestoreWindow(window);
     put_window(window, *place);

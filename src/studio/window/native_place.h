@@ -4,8 +4,8 @@
 #include <array>
 #include <vector>
 
+#include "studio/studio.h"
 #include "studio/window/app.h"
-#include "studio/window/shell.h"
 #include "studio/window/window_place.h"
 
 struct GLFWwindow;
@@ -22,9 +22,9 @@ float screen_scale(GLFWwindow* window, const std::vector<Monitor>& monitors);
 WindowPlace place_of(GLFWwindow* window);
 void put_window(GLFWwindow* window, const WindowPlace& place);
 /// Where the window was left, or in the middle of the main monitor.
-WindowPlace first_place(const Shell& shell, const DesktopOptions& options);
+WindowPlace first_place(const Studio& studio, const DesktopOptions& options);
 /// Off the projector, when the projector was chosen or monitors came and went.
-void move_off_projector(Shell& shell, GLFWwindow* window);
+void move_off_projector(Studio& studio, GLFWwindow* window);
 
 struct Studio;
 

@@ -2,7 +2,8 @@
 #include <imgui.h>
 
 #include "studio/kit/theme.h"
-#include "studio/window/shell.h"
+#include "studio/studio.h"
+#include "studio/window/layout.h"
 
 namespace livery {
 
@@ -62,14 +63,14 @@ bool draw_notice(const Notice& notice, float width) {
 
 }  // namespace
 
-void draw_notices(Shell& shell) {
-    auto& notices = shell.studio.notices;
+void draw_notices(Studio& studio) {
+    auto& notices = studio.notices;
     std::erase_if(notices, [&](const Notice& n) {
-        return n.shown_until_s > 0.0 && n.shown_until_s <= shell.studio.now_s;
+        return n.shown_until_s > 0.0 && n.shown_until_s <= studio.now_s;
     });
     if (notices.empty()) return;
     const float width = em(25.0f);
-    ImGui::SetNextWindowPos({shell.stage_x + em(0.7f), shell.stage_y + em(0.7f)});
+    ImGui::SetNextWindowPos({studio.stage_x + em(0.7f), studio.stage_y + em(0.7f)});
     ImGui::SetNextWindowBgAlpha(0.0f);
     ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0.0f, 0.0f});
     ImGui::PushStyleVar(ImGuiStyleVar_WindowBorderSize, 0.0f);
@@ -83,7 +84,7 @@ void draw_notices(Shell& shell) {
     const std::size_t first = notices.size() > most_shown ? notices.size() - most_shown : 0;
     for (std::size_t i = first; i < notices.size(); ++i) {
         // Over a camera's live view news can wait
-        if (shell.capture_open && notices[i].level == Notice::Level::info) continue;
+        if (is_open(studio, "capture") && notices[i].level == Notice::Level::info) continue;
         ImGui::PushID(static_cast<int>(i));
         if (draw_notice(notices[i], width)) dismissed = i;
         ImGui::PopID();

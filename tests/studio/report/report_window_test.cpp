@@ -33,7 +33,8 @@ class ReportWindow : public Panels {
     }
     std::vector<std::string> files(const Studio& studio) const {
         std::vector<std::string> names;
-        for (const ReportFile& file : *studio.panels.report->report) names.push_back(file.name);
+        for (const ReportFile& file : *studio.panels.of<ReportWindowState>().report)
+            names.push_back(file.name);
         return names;
     }
     static bool has(const std::vector<std::string>& names, const std::string& name) {
@@ -45,10 +46,11 @@ TEST_F(ReportWindow, IsReadTickedAndSaved) {
     Studio studio = make_studio();
     studio.file_dialog = std::make_unique<FileDialog>(studio.settings);
     EXPECT_FALSE(is_gathering_report(studio)) << "nothing is asked before somebody wants it";
-    show_report_window(studio, true, "a card of this test");
+    studio.drawn_with = "a card of this test";
+    show_report_window(studio, true);
     EXPECT_STREQ(state_of_report(studio), "gathering");
     ASSERT_TRUE(comes_to(studio, "ready"));
-    ReportWindowState& window = *studio.panels.report;
+    ReportWindowState& window = studio.panels.of<ReportWindowState>();
     EXPECT_EQ(window.problem, "");
     for (const char* name :
          {"README.txt", "opengl.txt", "display.txt", "cameras.txt", "window.txt"}) {
@@ -83,7 +85,7 @@ TEST_F(ReportWindow, SaysWhyItWasNotSaved) {
     studio.file_dialog = std::make_unique<FileDialog>(studio.settings);
     show_report_window(studio, true);
     ASSERT_TRUE(comes_to(studio, "ready"));
-    ReportWindowState& window = *studio.panels.report;
+    ReportWindowState& window = studio.panels.of<ReportWindowState>();
     window.saving = std::async(std::launch::async, [report = window.report]() {
         write_problem_report("/proc/report.zip", *report, 0);
         return std::filesystem::path("/proc/report.zip");

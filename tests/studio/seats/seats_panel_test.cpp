@@ -13,16 +13,11 @@
 namespace livery {
 namespace {
 
-bool panel_open = true;
-
-void draw_seats(Studio& studio) { draw_seats_panel(studio, panel_open); }
+constexpr auto draw_seats = draw_seats_panel;
 
 class SeatsPanel : public Panels {
   protected:
-    SeatsPanel() {
-        panel_open = true;
-        use_scale(1.0f);
-    }
+    SeatsPanel() { use_scale(1.0f); }
     const Document& document() const { return studio_.session.document(); }
     const EyeSeat& seat(int number) const { return *find_seat(document().seats, number); }
     /// Presses on an item and pulls it, in steps, without letting go.
@@ -51,7 +46,7 @@ TEST_F(SeatsPanel, FitsIntoTheNarrowestColumn) {
     studio_.session.execute(UseEye{{EyeSource::mean, 0}});
     for (const float scale : {1.0f, 2.0f}) {
         use_scale(scale);
-        studio_.panels.seats->selected = 999;
+        studio_.panels.of<SeatsPanelState>().selected = 999;
         const ItemPlaces places = frames(studio_, draw_seats, 3);
         for (const char* name : {"plan",
                                  "plan:seat:999",
@@ -74,13 +69,13 @@ TEST_F(SeatsPanel, FitsIntoTheNarrowestColumn) {
 TEST_F(SeatsPanel, SeatsAreAddedPlacedInAnArcAndRemoved) {
     click(studio_, draw_seats, "seats:add");
     ASSERT_EQ(document().seats.size(), 1u);
-    EXPECT_EQ(studio_.panels.seats->selected, 1);
+    EXPECT_EQ(studio_.panels.of<SeatsPanelState>().selected, 1);
     click(studio_, draw_seats, "seats:add");
     ASSERT_EQ(document().seats.size(), 2u);
     click(studio_, draw_seats, "seats:remove");
     ASSERT_EQ(document().seats.size(), 1u);
     EXPECT_EQ(document().seats[0].number, 1);
-    studio_.panels.seats->arc = 7;
+    studio_.panels.of<SeatsPanelState>().arc = 7;
     click(studio_, draw_seats, "seats:arc");
     EXPECT_EQ(document().seats.size(), 7u);
     EXPECT_EQ(studio_.session.undo_label(), "Place 7 seats");
@@ -106,25 +101,25 @@ TEST_F(SeatsPanel, ADragIsOneStepAndIsTriedMeanwhile) {
     studio_.session.undo();
     EXPECT_EQ(seat(1).eye_mm, glm::dvec3(0.0, 480.0, 900.0));
     // A press alone changes nothing but what is chosen.
-    studio_.panels.seats->selected = 0;
+    studio_.panels.of<SeatsPanelState>().selected = 0;
     click(studio_, draw_seats, "plan:seat:2");
     EXPECT_EQ(studio_.session.undo_label(), "Draw for the eye of seat 1");
-    EXPECT_EQ(studio_.panels.seats->selected, 2);
+    EXPECT_EQ(studio_.panels.of<SeatsPanelState>().selected, 2);
 }
 
 TEST_F(SeatsPanel, ASeatThatIsDraggedOverTheMockUpOrOutOfThePlanIsKeptAndToldWhy) {
     studio_.session.execute(SetSeats{{{1, {0.0, 480.0, 900.0}}}});
     const ItemPlaces places = frames(studio_, draw_seats, 2);
     const auto plan = places.at("plan");
-    const PlanExtent extent = studio_.panels.seats->extent;
+    const PlanExtent extent = studio_.panels.of<SeatsPanelState>().extent;
     pull("plan:seat:1", {0.0f, 3.0f * static_cast<float>(plan.height)});
-    EXPECT_NE(studio_.panels.seats->why.find("plan ends"), std::string::npos);
+    EXPECT_NE(studio_.panels.of<SeatsPanelState>().why.find("plan ends"), std::string::npos);
     let_go();
     EXPECT_NEAR(seat(1).eye_mm.z, extent.high_mm.y, 1e-6);
     studio_.session.undo();
     frames(studio_, draw_seats, 2);
     // Onto the mock-up, which stands at the origin.
-    const SeatsPanelState& state = *studio_.panels.seats;
+    const SeatsPanelState& state = studio_.panels.of<SeatsPanelState>();
     const double scale = plan.width / (state.extent.high_mm.x - state.extent.low_mm.x);
     pull("plan:seat:1", {0.0f, static_cast<float>(-900.0 * scale)});
     EXPECT_NE(state.why.find("on the mock-up"), std::string::npos) << state.why;
@@ -147,14 +142,14 @@ TEST_F(SeatsPanel, TheEyeThatIsSetByHandIsDraggedAndAnothersIsNot) {
 
 TEST_F(SeatsPanel, NothingIsComputedWithoutSeats) {
     frames(studio_, draw_seats, 3);
-    EXPECT_FALSE(studio_.panels.seats->thread);
-    EXPECT_FALSE(studio_.panels.seats->results);
-    EXPECT_FALSE(studio_.panels.seats->map_texture);
+    EXPECT_FALSE(studio_.panels.of<SeatsPanelState>().thread);
+    EXPECT_FALSE(studio_.panels.of<SeatsPanelState>().results);
+    EXPECT_FALSE(studio_.panels.of<SeatsPanelState>().map_texture);
 }
 
 TEST_F(SeatsPanel, SeatsStandStillWhileLooksAreFrozen) {
     studio_.session.execute(SetSeats{{{1, {0.0, 480.0, 900.0}}}});
-    studio_.panels.presenting->freezing.emplace();
+    studio_.panels.of<PresentingState>().freezing.emplace();
     const std::uint64_t before = studio_.session.revision();
     pull("plan:seat:1", {24.0f, 8.0f});
     EXPECT_FALSE(studio_.tried);
