@@ -11,9 +11,6 @@
 #include "live/projector_setup.h"
 #include "scene/library.h"
 #include "scene/view.h"
-#include "studio/kit/words.h"
-#include "studio/projector.h"
-#include "studio/studio.h"
 #include "studio/users_library.h"
 
 namespace livery {

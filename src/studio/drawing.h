@@ -1,12 +1,6 @@
 // Session and stage in, results out: what runs between the window and the threads behind it.
 #pragma once
 
-#include <cstdint>
-#include <memory>
-#include <optional>
-#include <vector>
-
-#include "gl/window.h"
 #include "scene/scene.h"
 #include "session/document.h"
 #include "studio/studio.h"

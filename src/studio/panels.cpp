@@ -1,7 +1,5 @@
 // The list of all panels.
-#include <array>
 #include <stdexcept>
-#include <string>
 
 #include "studio/studio.h"
 

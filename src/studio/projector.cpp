@@ -7,10 +7,8 @@
 #include <imgui.h>
 
 #include "core/log.h"
-#include "gl/window.h"
 #include "projection/desktop_watch.h"
 #include "projection/projector_screen.h"
-#include "studio/kit/theme.h"
 #include "studio/studio.h"
 
 namespace livery {

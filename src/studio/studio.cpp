@@ -8,7 +8,6 @@
 
 #include "core/log.h"
 #include "studio/kit/imgui_versions.h"
-#include "studio/kit/theme.h"
 
 namespace livery {
 

@@ -1,5 +1,6 @@
 // What the panels of the operator's window share: the session, the threads and their newest
-// results, and what the pointer is over. One instance, main thread.
+// results, what the pointer is over, and the controls that they are drawn with. One instance, main
+// thread.
 #pragma once
 
 #include <array>
@@ -28,7 +29,7 @@
 #include "session/session.h"
 #include "studio/kit/background.h"
 #include "studio/kit/file_dialog.h"
-#include "studio/kit/question.h"
+#include "studio/kit/widgets.h"
 #include "studio/panel.h"
 #include "studio/projector.h"
 

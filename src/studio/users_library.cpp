@@ -3,11 +3,9 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <exception>
 #include <iterator>
 #include <numbers>
 #include <stdexcept>
-#include <string_view>
 #include <utility>
 
 #include "appearance/measured/measured_paint.h"
@@ -15,7 +13,6 @@
 #include "appearance/paint_colour.h"
 #include "core/colour.h"
 #include "core/spectrum.h"
-#include "studio/kit/background.h"
 
 namespace livery {
 

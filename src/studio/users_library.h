@@ -2,14 +2,7 @@
 // searched.
 #pragma once
 
-#include <filesystem>
-#include <functional>
-#include <optional>
 #include <set>
-#include <string>
-#include <vector>
-
-#include <glm/vec3.hpp>
 
 #include "appearance/material.h"
 #include "appearance/paint_search.h"

@@ -10,7 +10,7 @@
 #include "desktop/prepared.h"
 #include "desktop/two_monitors.h"
 #include "session/commands.h"
-#include "studio/kit/words.h"
+#include "studio/kit/widgets.h"
 
 namespace livery {
 namespace {

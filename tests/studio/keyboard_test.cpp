@@ -17,13 +17,12 @@
 #include "scene/library.h"
 #include "studio/kit/file_dialog.h"
 #include "studio/kit/imgui_versions.h"
-#include "studio/kit/tab_order.h"
-#include "studio/kit/theme.h"
 #include "studio/kit/ui_map.h"
+#include "studio/kit/widgets.h"
 #include "studio/kit/user_settings.h"
 #include "studio/projector.h"
 #include "studio/studio.h"
-#include "studio/window/window_state.h"
+#include "studio/window/layout.h"
 #include "support/temporary_folder.h"
 
 namespace livery {

@@ -1,4 +1,4 @@
-#include "studio/paint/lobe_plot.h"
+#include "studio/paint/paint_portrait.h"
 
 #include <gtest/gtest.h>
 

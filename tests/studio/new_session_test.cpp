@@ -20,7 +20,6 @@
 #include "scene/library.h"
 #include "studio/box_mesh.h"
 #include "studio/product/mesh_picture.h"
-#include "studio/product/open_session.h"
 #include "studio/studio.h"
 #include "support/file_error.h"
 #include "support/temporary_folder.h"

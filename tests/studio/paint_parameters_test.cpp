@@ -1,5 +1,5 @@
 // What the panel says of a paint's parameters, and colours as people type them.
-#include "studio/paint/paint_parameters.h"
+#include "studio/paint/paint_rows.h"
 
 #include <cmath>
 #include <string>
@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "core/colour.h"
-#include "studio/kit/words.h"
+#include "studio/kit/widgets.h"
 
 namespace livery {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "scene/library.h"
 #include "studio/kit/imgui_versions.h"
-#include "studio/kit/theme.h"
+#include "studio/kit/widgets.h"
 #include "studio/kit/ui_map.h"
 #include "studio/presenting/ballot_panel.h"
 #include "studio/studio.h"

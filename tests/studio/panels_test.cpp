@@ -13,7 +13,7 @@
 #include "core/paths.h"
 #include "scene/library.h"
 #include "studio/artwork/artwork_edit.h"
-#include "studio/kit/theme.h"
+#include "studio/kit/widgets.h"
 #include "studio/kit/ui_map.h"
 #include "studio/paint/library_panel.h"
 #include "studio/paint/swatches.h"

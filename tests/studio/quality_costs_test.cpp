@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include "core/paths.h"
-#include "studio/frame/plan_panel.h"
 #include "studio/panels_fixture.h"
 
 namespace livery {

@@ -1,4 +1,4 @@
-#include "studio/kit/words.h"
+#include "studio/kit/widgets.h"
 
 #include <gtest/gtest.h>
 

@@ -9,12 +9,9 @@
 #include "core/error.h"
 #include "scene/artwork_coats.h"
 #include "scene/artwork_picture.h"
-#include "studio/artwork/artwork_panel.h"
 #include "studio/artwork/artwork_values.h"
-#include "studio/kit/folders.h"
-#include "studio/kit/words.h"
-#include "studio/paint/paint_choice.h"
 #include "studio/paint/parts_panel.h"
+#include "studio/paint/swatches.h"
 #include "studio/users_library.h"
 
 namespace livery {

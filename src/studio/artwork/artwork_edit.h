@@ -1,12 +1,9 @@
 // Changes to the shown look's artwork, all of them commands.
 #pragma once
 
-#include <filesystem>
-#include <functional>
-#include <optional>
-#include <string>
-#include <vector>
+#include <cstddef>
 
+#include "scene/look.h"
 #include "studio/studio.h"
 
 namespace livery {
@@ -56,5 +53,23 @@ void stop_placing(Studio& studio);
 void try_placing(Studio& studio, const std::optional<PickedPoint>& point);
 /// Leaves it there.
 void place(Studio& studio, const PickedPoint& point);
+
+struct ArtworkPanelState {
+    int look = -1;                      ///< whose artwork it shows
+    std::optional<std::size_t> chosen;  ///< in that look's list
+    Held<Artwork> held;
+    std::string name;  ///< while it is typed
+    bool naming = false;
+    std::string search;             ///< in the list of paints
+    bool placing = false;           ///< the next click on the product puts it there
+    std::optional<Artwork> placed;  ///< where the pointer would put it
+    std::string problem;            ///< why what is being tried cannot be worn
+    /// Why each of the list is not to be seen, empty where it is; looked up again when the session
+    /// has changed.
+    std::optional<std::uint64_t> looked_up_at;
+    std::vector<std::string> not_seen;
+};
+
+void draw_artwork_fields(Studio& studio, std::size_t at);
 
 }  // namespace livery

@@ -1,5 +1,3 @@
-#include "studio/artwork/artwork_fields.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -15,13 +13,10 @@
 #include "core/error.h"
 #include "scene/library.h"
 #include "studio/artwork/artwork_edit.h"
-#include "studio/artwork/artwork_panel.h"
 #include "studio/artwork/artwork_values.h"
-#include "studio/kit/tab_order.h"
-#include "studio/kit/theme.h"
+#include "studio/kit/ui_map.h"
 #include "studio/kit/widgets.h"
-#include "studio/kit/words.h"
-#include "studio/paint/paint_choice.h"
+#include "studio/paint/swatches.h"
 
 namespace livery {
 

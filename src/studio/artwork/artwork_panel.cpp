@@ -8,11 +8,8 @@
 
 #include "core/error.h"
 #include "studio/artwork/artwork_edit.h"
-#include "studio/artwork/artwork_fields.h"
 #include "studio/artwork/artwork_values.h"
-#include "studio/kit/theme.h"
 #include "studio/kit/widgets.h"
-#include "studio/paint/paint_choice.h"
 #include "studio/paint/parts_panel.h"
 #include "studio/paint/swatches.h"
 
@@ -144,23 +141,21 @@ void draw_buttons(Studio& studio, const InList& place) {
                  : "A second tone, stripes, a pattern or a picture over the chosen part's paint.");
     end_disabled();
     draw_add_menu(studio);
-    const auto button = [&](const char* label,
+    const auto change = [&](const char* label,
                             const char* name,
                             const char* meaning,
                             bool possible,
                             void (*run)(Studio&, std::size_t)) {
         place_in_row(button_width(label));
         begin_disabled(!possible);
-        const bool pressed = ImGui::Button(label);
-        name_last_item(std::string("artwork:") + name);
-        tooltip(meaning);
+        const bool pressed = button(label, std::string("artwork:") + name, meaning);
         end_disabled();
         if (pressed) run(studio, place.at);
     };
-    button("↑", "up", "Over the one before it in this list.", !none && place.can_rise(), rise);
-    button("↓", "down", "Under the one behind it in this list.", !none && place.can_sink(), sink);
-    button("Duplicate", "duplicate", "A copy of the chosen one.", !none && !full, duplicate);
-    button("Delete", "delete", "Takes the chosen one off. Ctrl+Z brings it back.", !none, remove);
+    change("↑", "up", "Over the one before it in this list.", !none && place.can_rise(), rise);
+    change("↓", "down", "Under the one behind it in this list.", !none && place.can_sink(), sink);
+    change("Duplicate", "duplicate", "A copy of the chosen one.", !none && !full, duplicate);
+    change("Delete", "delete", "Takes the chosen one off. Ctrl+Z brings it back.", !none, remove);
 }
 
 }  // namespace

@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
-#include <filesystem>
-#include <string>
 #include <system_error>
 #include <utility>
 
@@ -16,10 +14,6 @@
 #include "core/paths.h"
 #include "jobs/calibrate/calibration_folder.h"
 #include "jobs/calibrate/calibration_grade.h"
-#include "studio/kit/background.h"
-#include "studio/kit/theme.h"
-#include "studio/kit/widgets.h"
-#include "studio/kit/words.h"
 #include "studio/studio.h"
 
 namespace livery {
@@ -235,7 +229,7 @@ void draw_bench_choice(Studio& studio, bool calibrating) {
             }
             name_last_item("bench:" + name);
         }
-        if (ImGui::Selectable("File…") && studio.file_dialog) {
+        if (named(ImGui::Selectable("File…"), "bench:file") && studio.file_dialog) {
             FileQuestion question;
             question.title = "Open a bench";
             question.action = "Open";
@@ -245,7 +239,6 @@ void draw_bench_choice(Studio& studio, bool calibrating) {
             };
             studio.file_dialog->ask(std::move(question));
         }
-        name_last_item("bench:file");
         ImGui::EndCombo();
     }
     name_last_item("bench");
@@ -263,20 +256,19 @@ void draw_calibrating(Studio& studio) {
         progress_bar(calibrating.fraction, fmt::format("{:.0f} %", 100.0 * calibrating.fraction));
         name_last_item("calibration-progress");
         dim_text("Of this step: " + calibrating.stage + ".");
-        if (ImGui::Button("Cancel", {-FLT_MIN, 0.0f})) studio.bench->cancel_calibration();
-        name_last_item("cancel-calibration");
-        tooltip("The calibration in use stays as it is.");
+        if (button(
+                "Cancel", "cancel-calibration", "The calibration in use stays as it is.", -FLT_MIN))
+            studio.bench->cancel_calibration();
         return;
     }
     begin_disabled(!studio.bench);
-    if (ImGui::Button("Calibrate on the simulated bench", {-FLT_MIN, 0.0f})) {
+    if (named(ImGui::Button("Calibrate on the simulated bench", {-FLT_MIN, 0.0f}),
+              "calibrate",
+              "Shows the patterns on the bench, photographs them and solves. The picture on the "
+              "mock-up stays; the calibrations before are kept.")) {
         state.dismissed = false;
         studio.bench->start_calibration();
     }
-    name_last_item("calibrate");
-    tooltip(
-        "Shows the patterns on the bench, photographs them and solves. The picture on the "
-        "mock-up stays; the calibrations before are kept.");
     end_disabled();
     if (ImGui::Button("Capture with a camera…", {-FLT_MIN, 0.0f})) show_panel(studio, "capture");
     name_last_item("open-capture");
@@ -292,8 +284,7 @@ void draw_calibrating(Studio& studio) {
         if (!calibrating.refused_fix.empty())
             dim_text(sentence("what helps: " + calibrating.refused_fix));
         dim_text("The calibration before stays in use.");
-        if (ImGui::Button("Dismiss")) state.dismissed = true;
-        name_last_item("dismiss-refusal");
+        if (button("Dismiss", "dismiss-refusal")) state.dismissed = true;
     }
 }
 
@@ -363,7 +354,7 @@ void draw_kept(Studio& studio) {
     }
     if (!listed) offer(readable_calibration(short_name(in_use)), in_use, in_use.string());
     offer("None: uncorrected", {}, "The picture goes out as plain sRGB.");
-    if (ImGui::Button("Load calibration folder…") && studio.file_dialog) {
+    if (button("Load calibration folder…", "load-calibration") && studio.file_dialog) {
         FileQuestion question;
         question.kind = FileQuestion::Kind::folder;
         question.title = "Load a calibration";
@@ -373,7 +364,6 @@ void draw_kept(Studio& studio) {
         };
         studio.file_dialog->ask(std::move(question));
     }
-    name_last_item("load-calibration");
 }
 
 }  // namespace

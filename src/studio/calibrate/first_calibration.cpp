@@ -1,12 +1,9 @@
 // The simulated bench is calibrated by itself for whoever has no calibration yet.
 
 #include <algorithm>
-#include <exception>
-#include <string>
 
 #include "live/projector_setup.h"
 #include "studio/calibrate/calibration_panel.h"
-#include "studio/kit/words.h"
 #include "studio/studio.h"
 
 namespace livery {

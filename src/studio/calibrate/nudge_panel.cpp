@@ -1,9 +1,6 @@
-#include "studio/calibrate/nudge_panel.h"
-
-#include <array>
+// The mock-up moved by hand until its lines, as the projector draws them, lie on it.
 #include <cfloat>
 #include <cmath>
-#include <filesystem>
 #include <stdexcept>
 #include <utility>
 
@@ -15,17 +12,32 @@
 #include "live/projector_setup.h"
 #include "projection/projector_screen.h"
 #include "scene/mockup_mask.h"
-#include "studio/actions.h"
-#include "studio/kit/background.h"
-#include "studio/kit/theme.h"
-#include "studio/kit/widgets.h"
-#include "studio/kit/words.h"
-#include "studio/projector.h"
+#include "scene/mockup_pose.h"
 #include "studio/studio.h"
 
 namespace livery {
 
 namespace {
+
+struct NudgePanelState {
+    bool open = false;
+    /// The calibration that is being moved: its views are kept while it is in use, also while the
+    /// panel is closed.
+    std::shared_ptr<const ProjectorSetup> setup;
+    View view;                          ///< of the projector, as moved so far
+    std::vector<View> undo, redo;       ///< newest last
+    double step_px = 1.0;               ///< of a button or a key
+    bool drawing = false;               ///< lines are on their way
+    std::shared_ptr<const View> drawn;  ///< what the newest lines were drawn from
+    std::shared_ptr<const Image8> lines;
+    std::shared_ptr<const ProjectorPicture> picture;  ///< the lines as a texture
+    std::shared_ptr<const Image8> photographed;       ///< the newest that the bench was to show
+    bool keeping = false;
+};
+
+/// Opens or closes the panel; while it is open the projector shows the lines. Says in a notice why
+/// it does not open.
+void show_nudge(Studio& studio, bool shown);
 
 constexpr std::array<double, 3> kSteps_px{0.1, 1.0, 10.0};
 constexpr double kCoarseMove = 10.0;  // with Shift
@@ -166,21 +178,20 @@ void draw_cross(Studio& studio, std::size_t first, const char* title, const char
 void draw_history(NudgePanelState& state) {
     const float third = std::floor(
         (ImGui::GetContentRegionAvail().x - 2.0f * ImGui::GetStyle().ItemSpacing.x) / 3.0f);
-    const auto button = [&](const char* label, const char* item, bool on, auto&& press) {
+    const auto step = [&](const char* label, const char* item, bool on, auto&& press) {
         begin_disabled(!on);
-        if (ImGui::Button(label, {third, 0.0f})) press();
-        name_last_item(item);
+        if (button(label, item, "", third)) press();
         end_disabled();
     };
-    button("Undo", "nudge:undo", !state.undo.empty(), [&] {
+    step("Undo", "nudge:undo", !state.undo.empty(), [&] {
         step_back(state.undo, state.redo, state.view);
     });
     ImGui::SameLine();
-    button("Redo", "nudge:redo", !state.redo.empty(), [&] {
+    step("Redo", "nudge:redo", !state.redo.empty(), [&] {
         step_back(state.redo, state.undo, state.view);
     });
     ImGui::SameLine();
-    button("Start over", "nudge:start-over", is_moved(state), [&] { start_over(state); });
+    step("Start over", "nudge:start-over", is_moved(state), [&] { start_over(state); });
 }
 
 void show_lines(Studio& studio) {
@@ -204,8 +215,7 @@ void photograph_lines(Studio& studio) {
                              studio.setup->design_white_y);
 }
 
-}  // namespace
-
+/// By how much the mock-up was moved so far.
 MockupMotion nudged_so_far(const Studio& studio) {
     const NudgePanelState& state = studio.panels.of<NudgePanelState>();
     if (!state.setup) return {};
@@ -243,9 +253,10 @@ void show_nudge(Studio& studio, bool shown) {
     state.setup = studio.setup;
     state.open = true;
     studio.view = StageView::projector;
-    if (state.picture) show_lines(studio);
+    show_lines(studio);
 }
 
+/// Takes over what was drawn and asks for what is to be drawn.
 void take_nudge(Studio& studio) {
     NudgePanelState& state = nudge_of(studio);
     if (!state.open) return;
@@ -274,6 +285,7 @@ void take_nudge(Studio& studio) {
         });
 }
 
+/// What a key means while the panel is open; true when it meant something.
 bool nudge_key(Studio& studio, const KeyChord& chord) {
     NudgePanelState& state = nudge_of(studio);
     for (const Way& way : kMoves) {
@@ -327,8 +339,6 @@ void draw_nudge_panel(Studio& studio) {
         "Arrows move, Ctrl+arrows turn, PgUp and PgDn bring nearer and farther; Shift takes "
         "ten steps at once. Esc leaves.");
 }
-
-namespace {
 
 void describe_nudge(const Studio& studio, MapState& state) {
     const NudgePanelState& nudge = studio.panels.of<NudgePanelState>();

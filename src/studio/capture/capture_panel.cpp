@@ -1,11 +1,9 @@
 #include "studio/capture/capture_panel.h"
 
 #include <algorithm>
-#include <array>
 #include <cfloat>
 #include <charconv>
 #include <stdexcept>
-#include <utility>
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -13,12 +11,6 @@
 
 #include "core/error.h"
 #include "projection/projector_screen.h"
-#include "scene/data_sheet.h"
-#include "studio/kit/theme.h"
-#include "studio/kit/user_settings.h"
-#include "studio/kit/widgets.h"
-#include "studio/kit/words.h"
-#include "studio/projector.h"
 #include "studio/studio.h"
 
 namespace livery {
@@ -224,8 +216,7 @@ void draw_cameras(Studio& studio) {
         "A camera on the network. A still camera (PTP/IP): ptpip:HOST or ptpip:HOST:PORT. A "
         "network camera: the address of its video, http://… or rtsp://…");
     ImGui::SameLine();
-    if (ImGui::Button("Connect") || entered) connect(studio);
-    name_last_item("camera-connect");
+    if (button("Connect", "camera-connect") || entered) connect(studio);
     end_disabled();
     if (!state.address_problem.empty()) warning_text(sentence(state.address_problem));
     if (!state.problem.empty()) warning_text(state.problem);
@@ -301,12 +292,10 @@ void draw_place(Studio& studio) {
     const Place place = place_of(studio);
     begin_disabled(is_busy(state.view));
     const auto offer = [&](Place which, const char* label, const char* item, const char* meaning) {
-        if (ImGui::RadioButton(label, place == which) && place != which) {
+        if (named(ImGui::RadioButton(label, place == which), item, meaning) && place != which) {
             state.place = which;
             choose(studio, *state.chosen);
         }
-        name_last_item(item);
-        tooltip(meaning);
     };
     offer(Place::found,
           "find where it stands, from photographs",
@@ -326,8 +315,7 @@ void draw_place(Studio& studio) {
         const bool whole = are_whole(state.sheets);
         if (place == Place::found) {
             ImGui::SetNextItemOpen(!whole, ImGuiCond_Appearing);
-            const bool open = ImGui::CollapsingHeader("Data sheets");
-            name_last_item("data-sheets");
+            const bool open = named(ImGui::CollapsingHeader("Data sheets"), "data-sheets");
             if (open) draw_data_sheets(studio);
         }
         if (place == Place::found && !are_whole(state.sheets))
@@ -395,12 +383,11 @@ void draw_capture_panel(Studio& studio) {
     ImGui::PopFont();
     ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - button_width("Close"));
     begin_disabled(is_busy(state.view));
-    if (ImGui::Button("Close")) {
+    if (button("Close", "capture-close")) {
         show_capture(studio, false);
         end_disabled();
         return;
     }
-    name_last_item("capture-close");
     end_disabled();
     dim_text("From cable to corrected picture, step by step.");
     draw_cameras(studio);

@@ -7,8 +7,6 @@
 #include <imgui.h>
 
 #include "studio/capture/capture_panel.h"
-#include "studio/kit/theme.h"
-#include "studio/kit/widgets.h"
 #include "studio/studio.h"
 
 namespace livery {
@@ -156,11 +154,10 @@ void draw_tile_actions(Studio& studio) {
     if (!state.selected) return;
     ImGui::SameLine();
     const std::string label = fmt::format("Take {} again", view.tiles[*state.selected].of);
-    if (ImGui::Button(label.c_str())) {
+    if (button(label, "take-again")) {
         studio.capture->take_again(*state.selected);
         state.selected.reset();
     }
-    name_last_item("take-again");
 }
 
 /// What the newest step that is done has found; null: nothing to see.

@@ -1,6 +1,5 @@
 // The steps from cable to corrected picture: what each found, and the button to the next.
 #include <algorithm>
-#include <array>
 #include <cfloat>
 #include <cmath>
 
@@ -9,9 +8,6 @@
 
 #include "studio/calibrate/calibration_panel.h"
 #include "studio/capture/capture_panel.h"
-#include "studio/kit/theme.h"
-#include "studio/kit/widgets.h"
-#include "studio/kit/words.h"
 #include "studio/studio.h"
 
 namespace livery {
@@ -70,18 +66,16 @@ void draw_running(Studio& studio) {
         name_last_item("capture-next");
     }
     const float half = 0.5f * (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x);
-    if (toggle_button(view.paused ? "Go on" : "Pause", view.paused, half))
+    if (named(toggle_button(view.paused ? "Go on" : "Pause", view.paused, half), "capture-pause"))
         capture.set_paused(!view.paused);
-    name_last_item("capture-pause");
     ImGui::SameLine();
-    if (ImGui::Button("Stop", {half, 0.0f})) {
+    if (named(ImGui::Button("Stop", {half, 0.0f}),
+              "capture-stop",
+              "What was photographed is kept: the capture goes on from there when it is started "
+              "again, also after the program was closed.")) {
         capture.set_paused(false);
         capture.cancel();
     }
-    name_last_item("capture-stop");
-    tooltip(
-        "What was photographed is kept: the capture goes on from there when it is started "
-        "again, also after the program was closed.");
     // Below the buttons, which else would move with every line that is wrapped.
     if (!view.found_before.empty()) dim_text(sentence(view.found_before));
     std::string text = sentence(view.stage);
@@ -191,9 +185,8 @@ void draw_next(Studio& studio, bool can_show) {
             step.can_go_on ? "Go on with: " + std::string(words.name) : words.action;
         if (step.expected_s >= 1.0 && !by_hand)
             label += fmt::format(" (about {})", time_text(step.expected_s));
-        if (ImGui::Button(label.c_str(), large)) capture.start(*next, false);
-        name_last_item("capture-next-step");
-        tooltip(words.meaning);
+        if (named(ImGui::Button(label.c_str(), large), "capture-next-step", words.meaning))
+            capture.start(*next, false);
     }
     if (finished && !is_accepted(state)) {
         if (ImGui::Button("Accept: put it to use", next ? ImVec2{-FLT_MIN, 0.0f} : large))
@@ -206,11 +199,10 @@ void draw_next(Studio& studio, bool can_show) {
     if (finished && is_accepted(state)) {
         dim_text("This calibration is in use.");
         name_last_item("accepted");
-        if (ImGui::Button("Back to the one before", {-FLT_MIN, 0.0f})) {
+        if (button("Back to the one before", "revert", "", -FLT_MIN)) {
             commit(studio, SetCalibration{state.before.string()});
             studio.panels.of<CapturePanelState>().accepted.clear();
         }
-        name_last_item("revert");
     }
 }
 

@@ -1,14 +1,11 @@
-// What a quality level costs and how far it is from the ground truth, where that was measured.
+// What a quality level costs and how far it is from the ground truth, where that was measured; the
+// plan panel shows what the frame on the mock-up cost.
 #pragma once
 
-#include <chrono>
-#include <map>
-#include <optional>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include "ledger/budget.h"
+#include "ledger/machine_speed.h"
 #include "scene/frame_plan.h"
 #include "studio/studio.h"
 
@@ -55,5 +52,20 @@ double time_beside_passes_ms(const MeasuredCosts& measured, const FramePlan& pla
 
 /// For the operator: what the quality does, what it costs here.
 std::string quality_text(Studio& studio, Quality quality);
+
+struct PlanPanelState {
+    MeasuredCosts measured;
+    std::optional<PassCosts> costs;    ///< as known; none: not read yet
+    std::optional<PassCosts> shipped;  ///< where nobody measured: what frames scale
+    PassRatios ratios;                 ///< of the frames of this run
+    EffectErrors errors;
+    std::string problem;
+    /// Of draft, normal and high, for the frame that was done then.
+    std::array<std::optional<QualityCost>, 3> of_qualities;
+    std::chrono::steady_clock::time_point priced_at{};
+    /// The levels in the document, for the frame that was done then.
+    std::optional<PricedFrame> frame_price;
+    std::chrono::steady_clock::time_point frame_priced_at{};
+};
 
 }  // namespace livery

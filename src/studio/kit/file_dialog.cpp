@@ -2,14 +2,13 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 #include <imgui.h>
 #include <imgui_internal.h>
 #include <imgui_stdlib.h>
 
 #include "studio/kit/folders.h"
-#include "studio/kit/tab_order.h"
-#include "studio/kit/theme.h"
 #include "studio/kit/ui_map.h"
 #include "studio/kit/widgets.h"
 
@@ -154,8 +153,7 @@ struct FileDialog::State {
         name_last_item("file-dialog:up");
         tooltip("Alt+Up");
         ImGui::SameLine();
-        if (ImGui::Button("Home")) entered = home_folder();
-        name_last_item("file-dialog:home");
+        if (button("Home", "file-dialog:home")) entered = home_folder();
         ImGui::SameLine();
         ImGui::AlignTextToFramePadding();
         const float width = ImGui::GetContentRegionAvail().x;
@@ -299,8 +297,7 @@ void FileDialog::draw() {
     const float width = em(7.0f);
     ImGui::SetCursorPosX(ImGui::GetContentRegionMax().x - 2.0f * width -
                          ImGui::GetStyle().ItemSpacing.x);
-    bool cancelled = ImGui::Button("Cancel", {width, 0.0f});
-    name_last_item("file-dialog:cancel");
+    bool cancelled = button("Cancel", "file-dialog:cancel", "", width);
     ImGui::SameLine();
     const char* action = state.asking_to_overwrite ? "Replace" : state.question->action.c_str();
     agreed = ImGui::Button(action, {width, 0.0f}) || agreed;
@@ -311,6 +308,37 @@ void FileDialog::draw() {
     if (cancelled) state.question.reset();
     if (cancelled || answered) ImGui::CloseCurrentPopup();
     ImGui::EndPopup();
+}
+
+void draw_question(std::optional<Question>& question) {
+    if (!question) return;
+    const std::string title = question->what + "###question";
+    if (std::exchange(question->to_open, false)) ImGui::OpenPopup(title.c_str());
+    const ImVec2 window = ImGui::GetMainViewport()->Size;
+    ImGui::SetNextWindowSize({std::min(em(30.0f), 0.94f * window.x), 0.0f});
+    ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Always, {0.5f, 0.5f});
+    if (!ImGui::BeginPopupModal(title.c_str(), nullptr, ImGuiWindowFlags_NoResize)) {
+        question.reset();
+        return;
+    }
+    ImGui::TextWrapped("%s", question->cause.c_str());
+    ImGui::Dummy({0.0f, em(0.3f)});
+    const float width = em(9.0f);
+    ImGui::SetCursorPosX(ImGui::GetContentRegionMax().x - 2.0f * width -
+                         ImGui::GetStyle().ItemSpacing.x);
+    const bool cancelled = ImGui::Button("Cancel", {width, 0.0f}) || was_pressed(ImGuiKey_Escape);
+    name_last_item("question:cancel");
+    ImGui::SameLine();
+    const bool agreed = button(question->action, "question:ok", "", width);
+    std::function<void()> then;
+    if (agreed && !cancelled) then = std::move(question->then);
+    if (agreed || cancelled) {
+        question.reset();
+        ImGui::CloseCurrentPopup();
+    }
+    ImGui::EndPopup();
+    // What comes of it may ask the next question.
+    if (then) then();
 }
 
 }  // namespace livery

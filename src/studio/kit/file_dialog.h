@@ -1,9 +1,11 @@
-// Asks for a file or a folder: where one is, what lies there, and a name to type.
+// Questions to the operator: for a file or a folder (where one is, what lies there, and a name to
+// type), and before something is taken away that took time to make.
 #pragma once
 
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -46,5 +48,16 @@ class FileDialog {
     struct State;
     std::unique_ptr<State> state_;
 };
+
+struct Question {
+    std::string what, cause;     ///< what is the matter, and what would come of going on
+    std::string action;          ///< on the button that goes on
+    std::function<void()> then;  ///< when it is pressed; "Cancel" and Esc do nothing
+    bool to_open = true;
+};
+
+/// Draws it, if there is one, once a frame; it is gone when it is answered. No other dialog may be
+/// drawn in that frame.
+void draw_question(std::optional<Question>& question);
 
 }  // namespace livery

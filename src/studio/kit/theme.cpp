@@ -1,5 +1,3 @@
-#include "studio/kit/theme.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -9,6 +7,7 @@
 #include <imgui_internal.h>
 
 #include "core/paths.h"
+#include "studio/kit/widgets.h"
 
 namespace livery {
 

@@ -10,9 +10,7 @@
 
 #include "core/colour.h"
 #include "core/spectrum.h"
-#include "studio/kit/theme.h"
 #include "studio/kit/ui_map.h"
-#include "studio/kit/words.h"
 
 namespace livery {
 
@@ -130,6 +128,19 @@ void slider(
 }
 
 }  // namespace
+
+bool named(bool answer, const std::string& name, const std::string& help) {
+    name_last_item(name);
+    if (!help.empty()) tooltip(help);
+    return answer;
+}
+
+bool button(const std::string& label,
+            const std::string& name,
+            const std::string& help,
+            float width) {
+    return named(ImGui::Button(label.c_str(), {width, 0.0f}), name, help);
+}
 
 bool last_item_is_held() { return ImGui::IsItemActive(); }
 

@@ -1,4 +1,5 @@
-// Controls that several panels share.
+// Controls, texts and colours that all panels share, and values as they say them. Neutral greys,
+// because the pictures are judged beside them; one muted accent.
 #pragma once
 
 #include <functional>
@@ -8,10 +9,50 @@
 
 #include <glm/vec3.hpp>
 
-struct ImVec2;
+struct ImFont;
 struct ImVec4;
 
+struct ImVec2;
+
 namespace livery {
+
+/// Reads the fonts at this scale and sets style and colours. Call between frames; the backend's
+/// font texture must be made anew afterwards. Throws FileError when a font is missing.
+void apply_theme(float scale);
+
+ImFont* heading_font();  ///< semi-bold, the text's size
+ImFont* large_font();    ///< semi-bold, for states that must be read from afar
+ImFont* small_font();
+
+namespace colours {
+extern const ImVec4 text, dim_text, accent, panel, raised, line, warning, error, good;
+}
+
+/// A panel's title, semi-bold, with space before it.
+void heading(const char* text);
+void dim_text(const std::string& text);                             ///< wrapped
+void warning_text(const std::string& text);                         ///< wrapped
+void coloured_text(const ImVec4& colour, const std::string& text);  ///< wrapped
+/// "Eye distance" left, the next item right of it, `width` of the row's share for the label.
+void row_label(const char* text, float share = 0.42f);
+/// An explanation that shows when the pointer rests on the last item.
+inline constexpr float kTooltipAfter_s = 0.5f;
+void tooltip(const std::string& text);
+/// Draws what a button cannot do yet in grey; pair with end_disabled().
+void begin_disabled(bool disabled);
+void end_disabled();
+/// A button of the given width (0: by its text) that is filled with the accent while `on`.
+bool toggle_button(const char* label, bool on, float width = 0.0f);
+/// Lengths follow the scale: a multiple of the text's size.
+float em(float multiple);
+
+/// Names the item just drawn (name_last_item()) and says what it is for; hands on what it answered.
+bool named(bool answer, const std::string& name, const std::string& help = "");
+/// A named button; width 0: as wide as its label.
+bool button(const std::string& label,
+            const std::string& name,
+            const std::string& help = "",
+            float width = 0.0f);
 
 /// Before an item of this width: on the same line if it fits, else on a new one.
 void place_in_row(float width);
@@ -93,5 +134,28 @@ class Held {
     Value value_{};
     bool held_ = false, held_now_ = false;
 };
+
+/// As people write it: 19650 is "19,650", 0.04251 "0.04251", 12.0 "12"; four digits below 1,000,
+/// whole numbers above.
+std::string readable_number(double value);
+
+/// "12.3 ms", "4.87 s".
+std::string milliseconds(double ms);
+
+/// Begins with a capital and ends with a full stop.
+std::string sentence(std::string text);
+
+/// "2026-11-21T09:16:05Z" -> "2026-11-21 09:16 UTC". Other texts stay as they are.
+std::string readable_time(const std::string& iso_8601);
+
+/// A kept calibration's folder, "2026-11-21T09-16-13Z-397cfee1" -> "2026-11-21 09:16 · 397cfee1".
+/// Other names stay as they are.
+std::string readable_calibration(const std::string& folder_name);
+
+/// "#a0b1c2" of linear Rec.709; channels outside [0, 1] are clipped (in_srgb() tells).
+std::string hex_of(const glm::dvec3& linear_rec709);
+bool in_srgb(const glm::dvec3& linear_rec709);
+/// Linear Rec.709 of "#a0b1c2", "a0b1c2" or "#abc"; nothing when it is none of these.
+std::optional<glm::dvec3> colour_of_hex(const std::string& text);
 
 }  // namespace livery

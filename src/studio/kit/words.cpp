@@ -1,5 +1,3 @@
-#include "studio/kit/words.h"
-
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -8,6 +6,7 @@
 #include <fmt/format.h>
 
 #include "core/colour.h"
+#include "studio/kit/widgets.h"
 
 namespace livery {
 

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <set>
 #include <utility>
-#include <vector>
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -12,11 +11,6 @@
 #include "ledger/accuracy/accuracy.h"
 #include "ledger/svg.h"
 #include "scene/effects.h"
-#include "studio/kit/background.h"
-#include "studio/kit/theme.h"
-#include "studio/kit/ui_map.h"
-#include "studio/kit/widgets.h"
-#include "studio/kit/words.h"
 #include "studio/studio.h"
 
 namespace livery {
@@ -200,20 +194,18 @@ std::string measured_on(const AccuracyPage& page, bool running) {
 void draw_measuring(Studio& studio, const AccuracyThread::State& now) {
     AccuracyPage& page = page_of(studio);
     if (now.running) {
-        if (ImGui::Button("Stop")) page.thread->stop();
-        name_last_item("accuracy:stop");
+        if (button("Stop", "accuracy:stop")) page.thread->stop();
         ImGui::SameLine();
         progress_bar(now.fraction, now.doing);
         return;
     }
     const bool presenting = is_editing_locked(studio);
     begin_disabled(presenting);
-    if (ImGui::Button("Measure on this machine")) {
+    if (button("Measure on this machine", "accuracy:measure")) {
         if (!page.thread) page.thread = std::make_unique<AccuracyThread>(wake_main_thread);
         page.problem.clear();
         page.thread->measure();
     }
-    name_last_item("accuracy:measure");
     end_disabled();
     tooltip(presenting
                 ? "A vote is presented."

@@ -1,5 +1,3 @@
-#include "studio/light/environment_choice.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -14,7 +12,6 @@
 #include "core/colour.h"
 #include "core/error.h"
 #include "core/paths.h"
-#include "studio/kit/theme.h"
 #include "studio/kit/widgets.h"
 #include "studio/light/light_values.h"
 #include "studio/light/lighting_panel.h"

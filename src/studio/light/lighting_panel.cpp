@@ -2,34 +2,19 @@
 #include "studio/light/lighting_panel.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <functional>
-#include <optional>
-#include <string>
-#include <vector>
 
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
-#include <glm/vec3.hpp>
 #include <imgui.h>
 #include <imgui_internal.h>
 
 #include "core/angles.h"
 #include "core/error.h"
-#include "mesh/mesh.h"
 #include "scene/frame_plan.h"
-#include "scene/look.h"
 #include "studio/frame/quality_costs.h"
 #include "studio/kit/imgui_versions.h"
-#include "studio/kit/theme.h"
-#include "studio/kit/ui_map.h"
-#include "studio/kit/widgets.h"
-#include "studio/light/environment_choice.h"
 #include "studio/light/light_values.h"
-#include "studio/light/quality_section.h"
-#include "studio/light/reference_tracing.h"
-#include "studio/studio.h"
 #include "twin/description.h"
 
 namespace livery {
@@ -241,8 +226,7 @@ void draw_light(Studio& studio, Look& edited, const Look& before, std::size_t i)
     const std::string title = fmt::format("{}  {}###light", i + 1, light_name(i));
     bool keep = true;
     ImGui::SetNextItemOpen(i < 2, ImGuiCond_Once);
-    const bool open = section_header(title.c_str(), &keep);
-    name_last_item(fmt::format("light:{}", i));
+    const bool open = named(section_header(title.c_str(), &keep), fmt::format("light:{}", i));
     if (!keep) {
         auto lights = before.lights;
         lights.erase(lights.begin() + static_cast<std::ptrdiff_t>(i));
@@ -268,7 +252,7 @@ void draw_lights(Studio& studio, Look& edited, const Look& before) {
     ImGui::SameLine();
     ImGui::BeginGroup();
     begin_disabled(before.lights.size() >= kMostLights);
-    if (ImGui::Button("Add light")) {
+    if (button("Add light", "add-light")) {
         auto lights = before.lights;
         DirectionalLight light;
         light.direction = glm::normalize(glm::dvec3(0.3, 1.0, 0.6));
@@ -277,7 +261,6 @@ void draw_lights(Studio& studio, Look& edited, const Look& before) {
         lights.push_back(light);
         commit(studio, SetLights{studio.shown_look, lights});
     }
-    name_last_item("add-light");
     end_disabled();
     dim_text(before.lights.empty() ? "This look has no lights."
                                    : "Pull a dot: the middle is straight above, the rim the "

@@ -1,16 +1,12 @@
-// What the lighting panel remembers between frames. Owns a texture: destroyed with the window's
-// context current.
+// The panel of lights, environment, eye, exposure and quality: what it remembers between frames,
+// and its sections.
 #pragma once
 
-#include <memory>
-#include <optional>
-#include <string>
-#include <vector>
-
-#include "gl/handles.h"
+#include "live/frame_pictures.h"
+#include "live/reference_thread.h"
 #include "scene/look.h"
 #include "scene/product.h"
-#include "studio/kit/widgets.h"
+#include "studio/studio.h"
 
 namespace livery {
 
@@ -31,5 +27,31 @@ struct LightingPanelState {
     double budget_s = 0.0;       ///< 0: not moved yet
     std::string budget_problem;  ///< why no levels fit it
 };
+
+struct ReferenceTracing {
+    std::unique_ptr<ReferenceThread> thread;  ///< none: nobody asked yet
+    std::uint64_t asked = 0;                  ///< the frame that is traced
+    std::shared_ptr<const TracedFrame> taken;
+    std::unique_ptr<TexturePool> textures;  ///< of the window's context
+};
+
+/// Why it cannot be traced now, in a sentence; empty: it can.
+std::string why_not_traced(const Studio& studio);
+/// Of the frame on the mock-up. Throws Refused when it cannot be.
+void trace_reference_of(Studio& studio);
+bool is_tracing(const Studio& studio);
+
+/// A new picture to the projector, once a frame of the window; ended where something else is to be
+/// shown.
+void take_traced(Studio& studio);
+
+void draw_reference_row(Studio& studio);
+
+/// Edits `environment` (the held one of the look shown); commits and tries by itself.
+void draw_environment_choice(Studio& studio,
+                             EnvironmentReference& environment,
+                             const std::function<void()>& after_item);
+
+void draw_quality_section(Studio& studio);
 
 }  // namespace livery

@@ -1,22 +1,12 @@
-#include "studio/light/quality_section.h"
-
-#include <array>
 #include <cmath>
-#include <string>
 
 #include <fmt/format.h>
 #include <imgui.h>
 
 #include "core/error.h"
 #include "studio/drawing.h"
-#include "studio/frame/plan_panel.h"
 #include "studio/frame/quality_costs.h"
-#include "studio/kit/theme.h"
-#include "studio/kit/ui_map.h"
-#include "studio/kit/widgets.h"
-#include "studio/kit/words.h"
 #include "studio/light/lighting_panel.h"
-#include "studio/light/reference_tracing.h"
 #include "studio/studio.h"
 
 namespace livery {
@@ -176,8 +166,7 @@ void draw_quality_section(Studio& studio) {
     const PricedFrame* frame = priced_frame(studio);
     if (!frame) return;
     draw_budget(studio, *frame);
-    if (ImGui::Button("What accuracy costs…")) show_panel(studio, "accuracy");
-    name_last_item("accuracy");
+    if (button("What accuracy costs…", "accuracy")) show_panel(studio, "accuracy");
     const bool open = section_header("Effects, their price and what they leave###effects");
     name_last_item("effects");
     if (!open) return;

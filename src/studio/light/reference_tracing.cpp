@@ -1,7 +1,4 @@
-#include "studio/light/reference_tracing.h"
-
 #include <algorithm>
-#include <chrono>
 #include <span>
 #include <utility>
 
@@ -9,10 +6,7 @@
 #include <imgui.h>
 
 #include "core/error.h"
-#include "studio/kit/theme.h"
-#include "studio/kit/widgets.h"
-#include "studio/kit/words.h"
-#include "studio/projector.h"
+#include "studio/light/lighting_panel.h"
 #include "studio/studio.h"
 
 namespace livery {
@@ -119,21 +113,19 @@ void draw_reference_row(Studio& studio) {
     const ReferenceTracing& state = tracing(studio);
     const auto now = state.thread ? state.thread->state() : ReferenceThread::State();
     if (now.running) {
-        if (ImGui::Button("Stop")) state.thread->stop();
-        name_last_item("reference:stop");
+        if (button("Stop", "reference:stop")) state.thread->stop();
         ImGui::SameLine();
         progress_bar(now.fraction, fmt::format("Reference, to within {:.0f}%", 100.0 * now.error));
     } else {
         const std::string why = why_not_traced(studio);
         begin_disabled(!why.empty());
-        if (ImGui::Button("Trace the reference")) {
+        if (button("Trace the reference", "reference")) {
             try {
                 trace_reference_of(studio);
             } catch (const Refused&) {
                 notify_failure(studio, "The reference was not traced.", std::current_exception());
             }
         }
-        name_last_item("reference");
         end_disabled();
         tooltip(why.empty()
                     ? "The path tracer's picture of this look, corrected like any other, takes the "

@@ -1,11 +1,8 @@
 #include "studio/looks/look_files.h"
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <cmath>
-#include <functional>
-#include <memory>
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -17,8 +14,6 @@
 #include "jobs/render/render.h"
 #include "scene/look.h"
 #include "session/look_exchange.h"
-#include "studio/kit/folders.h"
-#include "studio/kit/theme.h"
 #include "studio/studio.h"
 #include "studio/users_library.h"
 

@@ -2,16 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <mutex>
 #include <utility>
 
 #include <fmt/format.h>
 #include <imgui.h>
 
-#include "gl/window.h"
-#include "live/orbit.h"
-#include "studio/kit/theme.h"
-#include "studio/kit/widgets.h"
 #include "studio/users_library.h"
 
 namespace livery {

@@ -1,11 +1,6 @@
 // Small pictures of looks, seen from the audience's eye, all in one light.
 #pragma once
 
-#include <map>
-#include <memory>
-#include <string>
-
-#include "gl/handles.h"
 #include "studio/paint/swatches.h"
 #include "studio/studio.h"
 

@@ -6,9 +6,6 @@
 #include <imgui.h>
 #include <imgui_stdlib.h>
 
-#include "studio/kit/tab_order.h"
-#include "studio/kit/theme.h"
-#include "studio/kit/widgets.h"
 #include "studio/looks/look_files.h"
 #include "studio/studio.h"
 

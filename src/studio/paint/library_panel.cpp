@@ -4,10 +4,7 @@
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
-#include <optional>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include <fmt/format.h>
 #include <imgui.h>
@@ -16,13 +13,8 @@
 
 #include "appearance/subsurface/translucent_material.h"
 #include "studio/kit/imgui_versions.h"
-#include "studio/kit/tab_order.h"
-#include "studio/kit/theme.h"
-#include "studio/kit/ui_map.h"
-#include "studio/kit/widgets.h"
-#include "studio/paint/paint_parameters.h"
+#include "studio/paint/paint_rows.h"
 #include "studio/paint/parts_panel.h"
-#include "studio/paint/swatches.h"
 #include "studio/studio.h"
 #include "studio/users_library.h"
 
@@ -133,9 +125,8 @@ void draw_search(LibraryPanelState& state) {
     state.searching = ImGui::IsItemActive() || ImGui::IsItemDeactivated();
     if (state.search.empty()) return;
     ImGui::SameLine(0.0f, gap);
-    if (ImGui::Button("×##clear", {clear_width, 0.0f})) state.search.clear();
-    name_last_item("paint-search-clear");
-    tooltip("Shows all paints again.");
+    if (button("×##clear", "paint-search-clear", "Shows all paints again.", clear_width))
+        state.search.clear();
 }
 
 /// By name, else by colour; the colour that was searched for.
@@ -218,13 +209,11 @@ void draw_families(LibraryPanelState& state, const std::vector<Section>& section
         }
     }
     std::sort(families.begin(), families.end());
-    if (chip("All", state.family.empty())) state.family.clear();
-    name_last_item("family:all");
+    if (named(chip("All", state.family.empty()), "family:all")) state.family.clear();
     for (const std::string& family : families) {
         place_in_row(button_width(family.c_str()));
         const bool on = state.family == family;
-        if (chip(family.c_str(), on)) state.family = on ? "" : family;
-        name_last_item("family:" + family);
+        if (named(chip(family.c_str(), on), "family:" + family)) state.family = on ? "" : family;
     }
 }
 
@@ -239,9 +228,8 @@ void draw_target(Studio& studio, const Target& target) {
     const auto offer =
         [&](const char* label, const char* name, PaintTarget one, const char* meaning) {
             place_in_row(button_width(label));
-            if (chip(label, chosen == one)) chosen = chosen == one ? part : one;
-            name_last_item(name);
-            tooltip(meaning);
+            if (named(chip(label, chosen == one), name, meaning))
+                chosen = chosen == one ? part : one;
         };
     offer("Whole product",
           "paint-target:product",
@@ -422,18 +410,16 @@ void draw_nothing_found(LibraryPanelState& state, const PaintLibrary& library) {
             ImGui::AlignTextToFramePadding();
             ImGui::TextUnformatted("Nearest:");
             ImGui::SameLine();
-            if (ImGui::SmallButton(near.front().c_str())) {
+            if (named(ImGui::SmallButton(near.front().c_str()), "paint-nearest")) {
                 state.search = near.front();
                 state.family.clear();
             }
-            name_last_item("paint-nearest");
         }
     }
-    if (ImGui::Button("Show all paints")) {
+    if (button("Show all paints", "paint-show-all")) {
         state.search.clear();
         state.family.clear();
     }
-    name_last_item("paint-show-all");
 }
 
 }  // namespace

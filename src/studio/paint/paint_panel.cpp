@@ -2,9 +2,7 @@
 #include "studio/paint/paint_panel.h"
 
 #include <algorithm>
-#include <array>
 #include <stdexcept>
-#include <string>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -16,15 +14,7 @@
 #include "appearance/model_table.h"
 #include "core/error.h"
 #include "session/naming.h"
-#include "studio/kit/tab_order.h"
-#include "studio/kit/theme.h"
-#include "studio/kit/widgets.h"
-#include "studio/kit/words.h"
-#include "studio/paint/paint_colour_row.h"
-#include "studio/paint/paint_parameters.h"
-#include "studio/paint/paint_portrait.h"
 #include "studio/paint/parts_panel.h"
-#include "studio/paint/translucent_rows.h"
 #include "studio/studio.h"
 #include "studio/users_library.h"
 
@@ -310,8 +300,7 @@ void draw_save_popup(Studio& studio) {
     if (!state.save_problem.empty()) warning_text(state.save_problem);
     const bool named = state.new_name.find_first_not_of(' ') != std::string::npos;
     begin_disabled(!named);
-    if (ImGui::Button("Save") || (entered && named)) save_paint(studio);
-    name_last_item("save-paint:save");
+    if (button("Save", "save-paint:save") || (entered && named)) save_paint(studio);
     end_disabled();
     ImGui::SameLine();
     if (ImGui::Button("Cancel") || was_pressed(ImGuiKey_Escape)) ImGui::CloseCurrentPopup();
@@ -376,8 +365,7 @@ void draw_actions(Studio& studio) {
                                  ? library_origin(material.name, current_library(studio))
                                  : nullptr;
     begin_disabled(origin == nullptr);
-    const bool reset = ImGui::Button("Reset to library");
-    name_last_item("reset-paint");
+    const bool reset = button("Reset to library", "reset-paint");
     const bool over = ImGui::IsItemHovered();
     tooltip(origin ? fmt::format("Gives the part the library's \"{}\" again.", origin->name)
                    : "This is the library's paint, or none of the library's lies under it.");
@@ -389,7 +377,7 @@ void draw_actions(Studio& studio) {
     }
     const char* save = "Save as new paint…";
     place_in_row(button_width(save));
-    if (ImGui::Button(save)) {
+    if (button(save, "save-paint", "Writes a material file into your own library.")) {
         const auto& own = studio.session.document().paints;
         state.new_name = free_name(material.name, [&](const std::string& name) {
             return current_library(studio).find(name) != nullptr ||
@@ -401,8 +389,6 @@ void draw_actions(Studio& studio) {
         state.save_problem.clear();
         ImGui::OpenPopup(kSavePopup);
     }
-    name_last_item("save-paint");
-    tooltip("Writes a material file into your own library.");
     draw_save_popup(studio);
     draw_rename(studio);
 }

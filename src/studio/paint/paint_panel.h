@@ -6,8 +6,8 @@
 #include <string>
 
 #include "studio/kit/widgets.h"
-#include "studio/paint/paint_colour_row.h"
 #include "studio/paint/paint_portrait.h"
+#include "studio/paint/paint_rows.h"
 
 namespace livery {
 

@@ -4,9 +4,6 @@
 
 #include <imgui.h>
 
-#include "studio/kit/theme.h"
-#include "studio/studio.h"
-
 namespace livery {
 
 std::optional<std::size_t> chosen_part(const Studio& studio) {

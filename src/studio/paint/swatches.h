@@ -1,10 +1,6 @@
-// Pictures of paints on a sphere, drawn by the preview's thread when it has time, and one paint of
-// the library's grid.
+// Pictures of paints on a sphere, drawn by the preview's thread when it has time; one paint's cell
+// in a list; and a list of paints to choose one from.
 #pragma once
-
-#include <map>
-#include <mutex>
-#include <string>
 
 #include <imgui.h>
 
@@ -40,5 +36,19 @@ void draw_swatch_cell(Studio& studio,
                       bool lit);
 /// What the paint is and where it comes from, beside the window that is drawn.
 void paint_tooltip(const Material& paint);
+
+/// The session's own, else the library's; null for a file, and for one that is gone.
+const Material* paint_named(Studio& studio, const std::string& name);
+
+/// In an open list: what the search finds, named "PREFIX:PAINT". `offer` is called right after each
+/// item, told whether it was picked.
+void draw_paint_list(Studio& studio,
+                     const std::string& search,
+                     const std::string& prefix,
+                     const std::string& chosen,
+                     const std::function<void(const Material& paint, bool picked)>& offer);
+
+/// A list's row: a swatch (none: an empty place) and a text; true when it was picked.
+bool swatch_row(Studio& studio, const Material* paint, const std::string& text, bool chosen);
 
 }  // namespace livery

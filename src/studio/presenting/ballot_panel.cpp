@@ -5,26 +5,15 @@
 #include <algorithm>
 #include <cfloat>
 #include <cmath>
-#include <filesystem>
-#include <optional>
-#include <string>
 #include <utility>
-#include <vector>
 
-#include <fmt/format.h>
 #include <imgui.h>
 
-#include "core/error.h"
 #include "core/paths.h"
 #include "evaluation/presentation_order.h"
-#include "studio/kit/file_dialog.h"
-#include "studio/kit/theme.h"
-#include "studio/kit/widgets.h"
-#include "studio/kit/words.h"
 #include "studio/looks/look_thumbnails.h"
 #include "studio/presenting/presenting.h"
-#include "studio/presenting/round_eye.h"
-#include "studio/seats/seat_maps.h"
+#include "studio/presenting/round_files.h"
 #include "studio/seats/seats_panel.h"
 #include "studio/studio.h"
 
@@ -115,11 +104,10 @@ void draw_earlier_rounds(Studio& studio) {
                                               readable_time(round->created),
                                               round->designs.size(),
                                               count_of(round->ballots));
-        if (ImGui::Selectable(label.c_str())) {
+        if (named(ImGui::Selectable(label.c_str()), fmt::format("ballot:round:{}", round->id))) {
             go_to(state, Page::result);
             state.shown_round = round->id;
         }
-        name_last_item(fmt::format("ballot:round:{}", round->id));
     }
 }
 
@@ -142,7 +130,7 @@ void draw_start(Studio& studio) {
     ImGui::SameLine();
     // What is voted on must be known to be corrected or not.
     begin_disabled(names.size() < 2 || loading);
-    if (ImGui::Button("Vote at once", {-FLT_MIN, em(2.4f)})) {
+    if (named(ImGui::Button("Vote at once", {-FLT_MIN, em(2.4f)}), "ballot:start")) {
         const std::string calibration =
             studio.setup->calibration ? studio.setup->calibration->id : std::string();
         RoundSetup setup{names, calibration};
@@ -154,7 +142,6 @@ void draw_start(Studio& studio) {
             go_to(state, Page::vote);
         }
     }
-    name_last_item("ballot:start");
     end_disabled();
     tooltip(loading ? "The calibration is being loaded."
                     : "In this window, without a presentation: whoever votes looks at what they "
@@ -169,8 +156,8 @@ void draw_start(Studio& studio) {
 void draw_back_to_rounds(Studio& studio) {
     BallotPanelState& state = studio.panels.of<BallotPanelState>();
     if (is_presenting(studio)) return;  // Back to editing, in the bar
-    if (ImGui::Button("All rounds")) go_to(state, open_round(state) ? Page::vote : Page::start);
-    name_last_item("ballot:rounds");
+    if (button("All rounds", "ballot:rounds"))
+        go_to(state, open_round(state) ? Page::vote : Page::start);
 }
 
 void draw_result(Studio& studio, const Round& round) {
@@ -188,8 +175,7 @@ void draw_result(Studio& studio, const Round& round) {
     draw_verdict(studio, round);
     draw_tally(round, tally);
     ImGui::Spacing();
-    if (ImGui::Button("Export as CSV…")) ask_where_to_export(studio, round, tally);
-    name_last_item("ballot:export");
+    if (button("Export as CSV…", "ballot:export")) ask_where_to_export(studio, round, tally);
     ImGui::SameLine();
     if (ImGui::Button("Write the report")) write_round_report(studio, round);
     name_last_item("ballot:report");

@@ -3,8 +3,6 @@
 #include <cctype>
 #include <cfloat>
 #include <cmath>
-#include <optional>
-#include <string>
 #include <utility>
 
 #include <fmt/format.h>
@@ -12,11 +10,6 @@
 #include <imgui_stdlib.h>
 
 #include "core/utf8.h"
-#include "studio/kit/tab_order.h"
-#include "studio/kit/theme.h"
-#include "studio/kit/ui_map.h"
-#include "studio/kit/widgets.h"
-#include "studio/kit/words.h"
 #include "studio/looks/look_thumbnails.h"
 #include "studio/presenting/ballot_panel.h"
 #include "studio/presenting/presenting.h"
@@ -86,7 +79,7 @@ void draw_choice(Ballot& ballot,
     const int index = static_cast<int>(design);
     const bool on = choice == index;
     ImGui::PushID(name);
-    if (toggle_button(label, on, width)) {
+    if (named(toggle_button(label, on, width), fmt::format("ballot:{}:{}", name, design))) {
         if (on) {
             choice = -1;
         } else {
@@ -97,7 +90,6 @@ void draw_choice(Ballot& ballot,
             choice = index;
         }
     }
-    name_last_item(fmt::format("ballot:{}:{}", name, design));
     ImGui::PopID();
 }
 
@@ -188,14 +180,12 @@ void draw_closing(Studio& studio, const Round& round) {
     BallotPanelState& state = studio.panels.of<BallotPanelState>();
     // What is presented is locked where it is presented, in the bar.
     if (is_presenting(studio)) {
-        if (ImGui::Button("Who has voted")) go_to(state, Page::start);
-        name_last_item("ballot:overview");
+        if (button("Who has voted", "ballot:overview")) go_to(state, Page::start);
         return;
     }
     if (!state.asking_to_close) {
-        if (ImGui::Button("Close the round…")) state.asking_to_close = true;
-        name_last_item("ballot:close");
-        tooltip("Ends the vote and shows the result.");
+        if (button("Close the round…", "ballot:close", "Ends the vote and shows the result."))
+            state.asking_to_close = true;
         return;
     }
     warning_text(
@@ -203,17 +193,15 @@ void draw_closing(Studio& studio, const Round& round) {
                     "result shows.",
                     round.id));
     const int id = round.id;
-    if (ImGui::Button("Close the round")) {
+    if (button("Close the round", "ballot:close-confirmed")) {
         if (attempted(state, [&] { studio.ballots->close_round(id); })) {
             read_rounds(studio);
             go_to(state, Page::result);
             state.shown_round = id;
         }
     }
-    name_last_item("ballot:close-confirmed");
     ImGui::SameLine();
-    if (ImGui::Button("Keep it open")) state.asking_to_close = false;
-    name_last_item("ballot:keep-open");
+    if (button("Keep it open", "ballot:keep-open")) state.asking_to_close = false;
 }
 
 void confirm(Studio& studio, const Round& round) {
@@ -233,8 +221,7 @@ void draw_vote(Studio& studio, const Round& round) {
     row_label("Your name", 0.25f);
     if (std::exchange(state.focus_name, false)) focus_next_field("##name");
     ImGui::SetNextItemWidth(-1.0f);
-    ImGui::InputTextWithHint("##name", "Enter to type it", &state.evaluator);
-    name_last_item("ballot:name");
+    named(ImGui::InputTextWithHint("##name", "Enter to type it", &state.evaluator), "ballot:name");
     // Enter leaves the field, which is no confirmation yet.
     const bool was_typing = ImGui::IsItemActive() || ImGui::IsItemDeactivated();
     tooltip("One ballot a person: a second one under the same name replaces the first.");
@@ -288,8 +275,7 @@ void draw_thanks(Studio& studio, const Round& round) {
                 count_of(now == state.rounds.end() ? round.ballots : now->ballots).c_str(),
                 round.id);
     ImGui::Spacing();
-    const bool next = ImGui::Button("Next ballot", {-FLT_MIN, em(2.4f)});
-    name_last_item("ballot:next");
+    const bool next = named(ImGui::Button("Next ballot", {-FLT_MIN, em(2.4f)}), "ballot:next");
     if (next || was_pressed(ImGuiKey_Enter)) {
         go_to(state, Page::vote);
         return;

@@ -2,9 +2,7 @@
 
 #include <algorithm>
 #include <charconv>
-#include <chrono>
 #include <cmath>
-#include <string_view>
 #include <utility>
 
 #include <fmt/format.h>

@@ -2,22 +2,12 @@
 // voted on and locked. What is remembered between frames, and what needs no projector.
 #pragma once
 
-#include <memory>
-#include <optional>
-#include <string>
-#include <vector>
-
-#include "evaluation/ballots.h"
 #include "evaluation/phone_page.h"
 #include "live/projector_setup.h"
-#include "projection/projector_screen.h"
 #include "studio/presenting/round_files.h"
 #include "studio/studio.h"
 
 namespace livery {
-
-struct KeyChord;
-struct Studio;
 
 /// How the next round is presented; kept with the user's settings.
 struct PresentingSettings {

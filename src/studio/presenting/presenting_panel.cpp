@@ -14,10 +14,8 @@
 #include "evaluation/ballot.h"
 #include "evaluation/phone_page.h"
 #include "evaluation/presentation_order.h"
-#include "studio/kit/theme.h"
 #include "studio/kit/ui_map.h"
 #include "studio/kit/widgets.h"
-#include "studio/kit/words.h"
 #include "studio/presenting/presenting.h"
 
 namespace livery {
@@ -104,13 +102,12 @@ void count_row(Studio& studio,
 
 void least_tick(Studio& studio) {
     PresentingSettings& settings = presenting_settings(studio);
-    if (ImGui::Checkbox("Ask for the least liked", &settings.asks_least)) {
+    if (named(ImGui::Checkbox("Ask for the least liked", &settings.asks_least),
+              "present:least",
+              "Each evaluator may name the look that they like least, too. Nobody has to; the "
+              "statistics use it where everybody does.")) {
         keep_presenting_settings(studio);
     }
-    name_last_item("present:least");
-    tooltip(
-        "Each evaluator may name the look that they like least, too. Nobody has to; the "
-        "statistics use it where everybody does.");
 }
 
 /// How the looks would be shown, in words; empty where they could not.

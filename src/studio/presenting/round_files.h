@@ -1,18 +1,11 @@
-// What a round leaves beside its ballots: its frozen frames, pictures and reach of its looks, and
-// its report.
+// What a round leaves beside its ballots: its frozen frames, pictures and reach of its looks, whose
+// eye they were shaded for and what seats missed of them, and its report.
 #pragma once
 
-#include <filesystem>
-#include <map>
-#include <memory>
-#include <optional>
-#include <string>
-#include <vector>
-
 #include "core/image.h"
-#include "evaluation/ballots.h"
 #include "evaluation/report/round_details.h"
 #include "live/projector_setup.h"
+#include "session/document.h"
 #include "studio/studio.h"
 
 namespace livery {
@@ -56,5 +49,15 @@ RoundDetails write_frozen_looks(const std::filesystem::path& ballots,
 
 /// On the background thread: HTML and PDF in that folder; the notice says where.
 void write_round_report(Studio& studio, const Round& round);
+
+/// The eye in use and the seats, without what they miss.
+RoundEye eye_of_round(const Document& document);
+
+/// Looks of the presented round for which it is not recorded yet what seats miss.
+std::vector<int> looks_to_record(const Studio& studio);
+
+/// Once a frame of the window: when all is found it is written beside the ballots, and seats that
+/// see other looks than they should are named.
+void record_seat_errors(Studio& studio);
 
 }  // namespace livery

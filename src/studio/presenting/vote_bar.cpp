@@ -1,18 +1,12 @@
 // The bar over the whole width, and what the audience sees.
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <string>
 
 #include <fmt/format.h>
 #include <imgui.h>
 
-#include "studio/kit/theme.h"
-#include "studio/kit/ui_map.h"
-#include "studio/kit/widgets.h"
 #include "studio/presenting/ballot_panel.h"
 #include "studio/presenting/presenting.h"
-#include "studio/projector.h"
 #include "studio/studio.h"
 
 namespace livery {

@@ -17,14 +17,12 @@
 #include "live/frame_pictures.h"
 #include "live/vote_frames.h"
 #include "projection/projector_screen.h"
-#include "studio/actions.h"
 #include "studio/drawing.h"
 #include "studio/looks/look_thumbnails.h"
 #include "studio/presenting/ballot_panel.h"
 #include "studio/presenting/presenting.h"
-#include "studio/presenting/round_eye.h"
+#include "studio/presenting/round_files.h"
 #include "studio/presenting/surround.h"
-#include "studio/projector.h"
 #include "studio/studio.h"
 
 namespace livery {

@@ -4,8 +4,6 @@
 #include "core/paths.h"
 #include "live/projector_setup.h"
 #include "scene/library.h"
-#include "studio/kit/folders.h"
-#include "studio/product/open_session.h"
 #include "studio/studio.h"
 
 namespace livery {

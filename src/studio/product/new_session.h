@@ -1,10 +1,11 @@
 // The page that makes a session of a product of one's own: a mesh is read, a few questions are
 // asked once with what they come to in millimetres, and a product file is written beside the
-// session.
+// session. And another session in the same window: opened, dropped on it, or one of the last.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -14,6 +15,7 @@
 
 #include "gl/handles.h"
 #include "session/session.h"
+#include "studio/kit/user_settings.h"
 #include "studio/product/mesh_picture.h"
 #include "studio/product/product_answers.h"
 
@@ -97,5 +99,32 @@ void draw_new_session(Studio& studio);  ///< once a frame
 void start_creating(Studio& studio);
 /// The mesh as it would stand; drawn in the background when it has changed.
 void ask_for_mesh_picture(Studio& studio, glm::ivec2 size_px);
+
+/// Opens it in the background; the window then goes on with it. Where it cannot be opened a notice
+/// says why and the session that is open stays; one that another start has open has its window
+/// asked for.
+void open_other_session(Studio& studio, const std::filesystem::path& file);
+/// Asks for the file first.
+void ask_for_session(Studio& studio);
+
+/// What came from another program: a session opens, a mesh or product file begins a new session,
+/// for anything else a notice says what can be dropped.
+void take_dropped_files(Studio& studio, const std::vector<std::filesystem::path>& files);
+
+/// Why another session may not take this one's place: something in it is on no disk. A sentence;
+/// empty: it may.
+std::string why_not_to_leave(const Studio& studio);
+
+/// Leaves the session by `then`, in words `doing` ("Opening car.livery") and on a button `action`
+/// ("Stop and open"). A calibration or a capture that this would stop is asked about first.
+void leave_session(Studio& studio,
+                   const std::string& doing,
+                   const std::string& action,
+                   std::function<void()> then);
+
+/// The newest first.
+std::vector<std::filesystem::path> recent_sessions(const UserSettings& settings);
+void remember_recent_session(UserSettings& settings, const std::filesystem::path& file);
+inline constexpr std::size_t kMostRecentSessions = 10;
 
 }  // namespace livery

@@ -1,6 +1,5 @@
 // The page of a new session, over the window.
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -10,9 +9,6 @@
 #include <imgui_internal.h>
 #include <imgui_stdlib.h>
 
-#include "studio/kit/theme.h"
-#include "studio/kit/widgets.h"
-#include "studio/kit/words.h"
 #include "studio/product/new_session.h"
 #include "studio/studio.h"
 
@@ -33,8 +29,7 @@ ImVec2 picture_size(float page_width) {
 /// A choice among the row's others; true when it was pressed.
 bool choice(const std::string& label, bool on, const std::string& name, bool first = false) {
     if (!first) place_in_row(button_width(label.c_str()));
-    const bool pressed = chip(label.c_str(), on);
-    name_last_item("new-session:" + name);
+    const bool pressed = named(chip(label.c_str(), on), "new-session:" + name);
     return pressed;
 }
 
@@ -88,11 +83,9 @@ void draw_up(NewSession& asked) {
         }
     }
     place_in_row(button_width("Turn"));
-    if (ImGui::Button("Turn")) {
+    if (button("Turn", "new-session:turn", "By a right angle, as it stands")) {
         turn(asked.answers);
     }
-    name_last_item("new-session:turn");
-    tooltip("By a right angle, as it stands");
     ImGui::EndGroup();
     reason(asked.suggested.up_why);
 }
@@ -185,8 +178,7 @@ void draw_parts(NewSession& asked) {
         ImGui::PushID(static_cast<int>(k));
         ImGui::SetNextItemWidth(em(14.0f));
         begin_disabled(!renames);
-        ImGui::InputText("##name", &names[k]);
-        name_last_item(fmt::format("new-session:part:{}", k));
+        named(ImGui::InputText("##name", &names[k]), fmt::format("new-session:part:{}", k));
         end_disabled();
         if (names[k] != asked.facts.parts[k]) {
             ImGui::SameLine();
@@ -203,8 +195,7 @@ void draw_picture(Studio& studio, const ImVec2& size) {
         ask_for_mesh_picture(studio, {static_cast<int>(size.x), static_cast<int>(size.y)});
     }
     const ImVec2 from = ImGui::GetCursorScreenPos();
-    ImGui::InvisibleButton("##picture", size);
-    name_last_item("new-session:picture");
+    named(ImGui::InvisibleButton("##picture", size), "new-session:picture");
     if (ImGui::IsItemActive() && ImGui::GetIO().MouseDelta.x != 0.0f) {
         // Half a turn over its width
         const double turned = 0.5 * kTurn_rad * static_cast<double>(ImGui::GetIO().MouseDelta.x) /
@@ -231,10 +222,9 @@ void draw_session_file(Studio& studio) {
     row("Session");
     std::string file = asked.session.string();
     ImGui::SetNextItemWidth(ImGui::GetContentRegionAvail().x - em(6.5f));
-    if (ImGui::InputText("##session", &file)) asked.session = file;
-    name_last_item("new-session:file");
+    if (named(ImGui::InputText("##session", &file), "new-session:file")) asked.session = file;
     ImGui::SameLine();
-    if (ImGui::Button("Change…", {em(6.0f), 0.0f})) {
+    if (button("Change…", "new-session:change", "", em(6.0f))) {
         FileQuestion question;
         question.kind = FileQuestion::Kind::save;
         question.title = "Where the session is saved";
@@ -247,7 +237,6 @@ void draw_session_file(Studio& studio) {
         };
         studio.file_dialog->ask(std::move(question));
     }
-    name_last_item("new-session:change");
 }
 
 void draw_questions(Studio& studio) {
@@ -284,8 +273,7 @@ void draw_given(Studio& studio) {
         dim_text(readable_number(static_cast<double>(asked.facts.triangles)) + " triangles");
     }
     ImGui::SameLine(ImGui::GetContentRegionMax().x - em(9.0f));
-    if (ImGui::Button("Another file…", {em(9.0f), 0.0f})) ask_for_product(studio);
-    name_last_item("new-session:mesh");
+    if (button("Another file…", "new-session:mesh", "", em(9.0f))) ask_for_product(studio);
     ImGui::Separator();
 }
 
@@ -297,13 +285,11 @@ bool draw_buttons(Studio& studio) {
     ImGui::SetCursorPosX(ImGui::GetContentRegionMax().x - 2.0f * width -
                          ImGui::GetStyle().ItemSpacing.x);
     begin_disabled(asked.stage == Stage::creating);
-    const bool cancelled = ImGui::Button("Cancel", {width, 0.0f});
-    name_last_item("new-session:cancel");
+    const bool cancelled = button("Cancel", "new-session:cancel", "", width);
     end_disabled();
     ImGui::SameLine();
     begin_disabled(asked.stage != Stage::asking);
-    if (ImGui::Button("Create session", {width, 0.0f})) start_creating(studio);
-    name_last_item("new-session:create");
+    if (button("Create session", "new-session:create", "", width)) start_creating(studio);
     end_disabled();
     return (cancelled || was_pressed(ImGuiKey_Escape)) && asked.stage != Stage::creating;
 }

@@ -1,5 +1,3 @@
-#include "studio/product/open_session.h"
-
 #include <algorithm>
 
 #include <GLFW/glfw3.h>
@@ -8,7 +6,6 @@
 #include "core/json.h"
 #include "scene/library.h"
 #include "session/session_file.h"
-#include "studio/kit/folders.h"
 #include "studio/kit/running_window.h"
 #include "studio/product/new_session.h"
 #include "studio/studio.h"

@@ -11,7 +11,7 @@
 
 #include "scene/library.h"
 #include "studio/kit/folders.h"
-#include "studio/kit/words.h"
+#include "studio/kit/widgets.h"
 
 namespace livery {
 

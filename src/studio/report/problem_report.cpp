@@ -4,16 +4,13 @@
 #include <array>
 #include <chrono>
 #include <exception>
-#include <filesystem>
 #include <fstream>
 #include <functional>
 #include <set>
 #include <sstream>
-#include <string>
 #include <string_view>
 #include <thread>
 #include <utility>
-#include <vector>
 
 #include <fmt/format.h>
 #include <link.h>
@@ -26,14 +23,12 @@
 #include "core/system/version.h"
 #include "core/system/zip_file.h"
 #include "core/utf8.h"
-#include "gl/context.h"
 #include "gl/window.h"
 #include "jobs/capture_bench.h"
 #include "projection/desktop_watch.h"
 #include "projection/monitors.h"
 #include "session/session_file.h"
 #include "studio/report/redaction.h"
-#include "studio/report/session_parts.h"
 
 namespace livery {
 

@@ -1,10 +1,8 @@
 #include "studio/report/report_window.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <ctime>
-#include <exception>
 #include <utility>
 
 #include <fmt/format.h>
@@ -12,10 +10,6 @@
 
 #include "core/error.h"
 #include "live/frame_pictures.h"
-#include "studio/kit/file_dialog.h"
-#include "studio/kit/folders.h"
-#include "studio/kit/theme.h"
-#include "studio/kit/widgets.h"
 #include "studio/studio.h"
 
 namespace livery {
@@ -181,12 +175,11 @@ void draw_end(Studio& studio) {
     name_last_item("report:save");
     ImGui::SameLine();
     if (!window.saved.empty()) {
-        if (ImGui::Button("Open folder", {em(8.0f), 0.0f}) &&
+        if (button("Open folder", "report:open-folder", "", em(8.0f)) &&
             !open_folder(window.saved.parent_path())) {
             window.problem = "No file manager is found (xdg-open); the archive lies in " +
                              window.saved.parent_path().string() + ".";
         }
-        name_last_item("report:open-folder");
         ImGui::SameLine();
     }
     ImGui::AlignTextToFramePadding();

@@ -1,5 +1,5 @@
 #include "core/json.h"
-#include "studio/report/session_parts.h"
+#include "studio/report/problem_report.h"
 
 namespace livery {
 

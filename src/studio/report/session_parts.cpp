@@ -1,5 +1,3 @@
-#include "studio/report/session_parts.h"
-
 #include <algorithm>
 #include <functional>
 
@@ -16,6 +14,7 @@
 #include "jobs/calibrate/calibration_grade.h"
 #include "jobs/file_check.h"
 #include "scene/colour_calibration.h"
+#include "studio/report/problem_report.h"
 
 namespace livery {
 

@@ -1,6 +1,5 @@
 // The plan of the room, drawn, with what is dragged in it.
 #include <algorithm>
-#include <array>
 #include <cfloat>
 #include <cmath>
 
@@ -11,10 +10,6 @@
 
 #include "live/projector_setup.h"
 #include "studio/kit/imgui_versions.h"
-#include "studio/kit/theme.h"
-#include "studio/kit/ui_map.h"
-#include "studio/kit/widgets.h"
-#include "studio/seats/seat_maps.h"
 #include "studio/seats/seats_panel.h"
 #include "studio/studio.h"
 

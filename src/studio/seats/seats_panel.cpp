@@ -8,12 +8,6 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
-#include "studio/kit/theme.h"
-#include "studio/kit/widgets.h"
-#include "studio/kit/words.h"
-#include "studio/seats/seat_maps.h"
-#include "studio/studio.h"
-
 namespace livery {
 
 namespace {
@@ -102,8 +96,7 @@ void draw_buttons(Studio& studio) {
     const float gap = ImGui::GetStyle().ItemInnerSpacing.x;
     const float half = std::floor(0.5f * (ImGui::GetContentRegionAvail().x - gap));
     begin_disabled(document.seats.size() >= kMostSeats);
-    if (ImGui::Button("Add a seat", {half, 0.0f})) add_seat(studio);
-    name_last_item("seats:add");
+    if (button("Add a seat", "seats:add", "", half)) add_seat(studio);
     end_disabled();
     tooltip(
         "Beside the others, at arm's length from the mock-up. A double click in the plan puts "
@@ -113,8 +106,7 @@ void draw_buttons(Studio& studio) {
     begin_disabled(!selected);
     const std::string remove =
         selected ? fmt::format("Remove seat {}###remove", selected->number) : "Remove###remove";
-    if (ImGui::Button(remove.c_str(), {half, 0.0f})) remove_selected(studio);
-    name_last_item("seats:remove");
+    if (button(remove, "seats:remove", "", half)) remove_selected(studio);
     end_disabled();
     tooltip("The chosen seat (Del).");
     ImGui::SetNextItemWidth(half);
@@ -161,10 +153,9 @@ void draw_selected(Studio& studio, std::vector<EyeSeat>& seats) {
     state.held.after_item();
     edit_with_last_item(studio, SetSeat{seat.number, seat.eye_mm, seat.counts});
     bool counts = seat.counts;
-    if (ImGui::Checkbox("Counts in the mean", &counts)) {
+    if (named(ImGui::Checkbox("Counts in the mean", &counts), "seat:counts")) {
         commit(studio, SetSeat{seat.number, seat.eye_mm, counts});
     }
-    name_last_item("seat:counts");
 }
 
 void draw_figures_row(Studio& studio, const EyeSeat& seat) {
@@ -286,9 +277,8 @@ void draw_seats_panel(Studio& studio) {
     const float side = ImGui::GetFrameHeight();
     heading("Seats in the room");
     ImGui::SameLine(ImGui::GetWindowContentRegionMax().x - side);
-    if (ImGui::Button("×##close-seats", {side, 0.0f})) show_seats(studio, false);
-    name_last_item("seats:close");
-    tooltip("Back to the paints. Seats stay.");
+    if (button("×##close-seats", "seats:close", "Back to the paints. Seats stay.", side))
+        show_seats(studio, false);
     draw_eye_choice(studio);
     std::vector<EyeSeat>& seats = state.held.start(studio.session.document().seats);
     // Undo while one is held: what is there counts

@@ -1,13 +1,11 @@
 #include "studio/window/app.h"
 
 #include <algorithm>
-#include <array>
 #include <atomic>
 #include <cmath>
 #include <csignal>
 #include <future>
 #include <utility>
-#include <vector>
 
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
@@ -22,26 +20,40 @@
 #include "scene/library.h"
 #include "studio/drawing.h"
 #include "studio/kit/running_window.h"
-#include "studio/kit/tab_order.h"
-#include "studio/kit/theme.h"
-#include "studio/kit/ui_map.h"
 #include "studio/presenting/presenting.h"
 #include "studio/product/new_session.h"
-#include "studio/product/open_session.h"
-#include "studio/projector.h"
 #include "studio/studio.h"
-#include "studio/trace.h"
-#include "studio/window/handover.h"
 #include "studio/window/imgui_window.h"
-#include "studio/window/keys.h"
 #include "studio/window/layout.h"
-#include "studio/window/native_place.h"
 #include "studio/window/window_place.h"
-#include "studio/window/window_state.h"
 
 namespace livery {
 
 namespace {
+
+/// Keeps a projector dark while one session's window goes and the next one's comes.
+struct DarkProjector {
+    Window context;
+    ProjectorScreen screen;
+
+    DarkProjector(const std::string& monitor, std::shared_ptr<DesktopWatch> desktop)
+        : context({"Livery (dark)", {16, 16}, false, true}), screen(context, std::move(desktop)) {
+        screen.set_black(true);
+        screen.use_monitor(monitor);
+        screen.monitors_changed();
+    }
+};
+
+/// What one session's window hands to the next one's.
+struct Handover {
+    std::shared_ptr<OpenedSession> opened;
+    std::unique_ptr<DarkProjector> dark;  ///< none: there was no projector
+    std::shared_ptr<Trace> trace;         ///< shared as in the studio
+    std::shared_ptr<DesktopWatch> desktop;
+    bool black = false;                 ///< it was so before
+    ImGuiWindow::HandedOut handed_out;  ///< counts go on: who drives the program waits for them
+    int frames_drawn = 0;
+};
 
 // Dear ImGui settles within this many frames after an input.
 constexpr int kFramesAfterInput = 3;

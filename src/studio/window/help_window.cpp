@@ -5,7 +5,6 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
-#include "studio/kit/theme.h"
 #include "studio/studio.h"
 
 namespace livery {

@@ -10,7 +10,7 @@
 #include <imgui.h>
 
 #include "studio/kit/imgui_versions.h"
-#include "studio/kit/theme.h"
+#include "studio/kit/widgets.h"
 #include "studio/trace.h"
 
 namespace livery {

@@ -1,5 +1,3 @@
-#include "studio/window/keys.h"
-
 #include <algorithm>
 
 #include <GLFW/glfw3.h>
@@ -8,6 +6,7 @@
 
 #include "studio/studio.h"
 #include "studio/users_library.h"
+#include "studio/window/layout.h"
 
 namespace livery {
 

@@ -4,9 +4,7 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
-#include "studio/frame/plan_panel.h"
-#include "studio/kit/theme.h"
-#include "studio/kit/widgets.h"
+#include "studio/frame/quality_costs.h"
 #include "studio/presenting/presenting.h"
 #include "studio/studio.h"
 #include "studio/window/layout.h"
@@ -27,8 +25,7 @@ void draw_monitor_choice(Studio& studio, float width) {
     const bool presented =
         is_presenting(studio) && phase_of(studio) != PresentationPhase::locked && chosen;
     begin_disabled(presented);
-    const bool open = ImGui::BeginCombo("##projector", shown.c_str());
-    name_last_item("projector-monitor");
+    const bool open = named(ImGui::BeginCombo("##projector", shown.c_str()), "projector-monitor");
     if (open) {
         if (ImGui::Selectable("no projector", studio.projector_monitor.empty())) {
             use_projector_monitor(studio, "");
@@ -50,8 +47,7 @@ void draw_monitor_choice(Studio& studio, float width) {
     end_disabled();
     ImGui::SameLine();
     begin_disabled(is_editing_locked(studio));
-    if (ImGui::Button("Show numbers")) show_monitor_numbers(studio);
-    name_last_item("show-numbers");
+    if (button("Show numbers", "show-numbers")) show_monitor_numbers(studio);
     end_disabled();
     tooltip("Shows each monitor's number, large, on every monitor for a moment.");
 }

@@ -1,5 +1,3 @@
-#include "studio/window/window_state.h"
-
 #include <algorithm>
 #include <charconv>
 #include <utility>
@@ -9,8 +7,8 @@
 #include <imgui_internal.h>
 
 #include "core/json.h"
-#include "studio/kit/tab_order.h"
 #include "studio/studio.h"
+#include "studio/window/layout.h"
 
 namespace livery {
 

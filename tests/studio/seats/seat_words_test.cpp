@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "studio/seats/seat_maps.h"
+#include "studio/seats/seats_panel.h"
 
 namespace livery {
 namespace {
