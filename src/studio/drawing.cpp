@@ -86,15 +86,13 @@ void ask_for_setup(Studio& studio) {
                            why);
             // Something must be shown: the same projector, uncorrected, and the panel says so.
             if (key.calibration.empty() || studio.setup) return;
-            studio.background->run(
-                [&studio, key](const Progress&) -> Background::Then {
-                    return [&studio, setup = uncorrected_setup(key.bench)] {
-                        take_setup(studio, setup);
-                    };
-                },
-                [&studio](std::exception_ptr again) {
-                    notify_failure(studio, "There is no projector to draw for.", again);
-                });
+            in_background(studio,
+                          "There is no projector to draw for.",
+                          [&studio, key](const Progress&) -> Background::Then {
+                              return [&studio, setup = uncorrected_setup(key.bench)] {
+                                  take_setup(studio, setup);
+                              };
+                          });
         });
 }
 
@@ -106,11 +104,11 @@ void tell_drawing_problems(Studio& studio, const Document& document, int look) {
     std::vector<std::string>& told = studio.told_problems[look];
     for (const std::string& problem : problems) {
         if (std::find(told.begin(), told.end(), problem) != told.end()) continue;
-        notify(studio,
-               {Notice::Level::warning,
-                problem,
-                "",
-                "Put the file back, or choose another; then change something to draw it again."});
+        tell_warning(
+            studio,
+            problem,
+            "",
+            "Put the file back, or choose another; then change something to draw it again.");
     }
     told = std::move(problems);
 }
@@ -162,7 +160,7 @@ void ask_for_frame(Studio& studio) {
     } catch (const std::exception& error) {
         studio.asked_frame = key;
         studio.not_drawn = error.what();
-        notify(studio, {Notice::Level::error, "The look cannot be drawn.", error.what(), ""});
+        tell_error(studio, "The look cannot be drawn.", error.what());
         return;
     }
     if (const auto unread = unread_files(description); !unread.empty()) {
@@ -404,11 +402,8 @@ void take_results(Studio& studio) {
     const auto newest = studio.results->newest_frame();
     if (newest && !newest->problem.empty() && newest->number > studio.problem_number) {
         studio.problem_number = newest->number;
-        notify(studio,
-               {Notice::Level::error,
-                "The picture could not be drawn; the last good one stays.",
-                newest->problem,
-                ""});
+        tell_error(
+            studio, "The picture could not be drawn; the last good one stays.", newest->problem);
     }
 }
 

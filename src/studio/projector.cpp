@@ -149,15 +149,10 @@ ProjectorWords projector_words(const ProjectorFacts& facts) {
 }
 
 const ImVec4& colour_of(SignalWarning::Severity severity) {
-    switch (severity) {
-        case SignalWarning::Severity::error:
-            return colours::error;
-        case SignalWarning::Severity::warning:
-            return colours::warning;
-        case SignalWarning::Severity::note:
-            break;
-    }
-    return colours::dim_text;
+    using enum SignalWarning::Severity;
+    return severity == error     ? colours::error
+           : severity == warning ? colours::warning
+                                 : colours::dim_text;
 }
 
 // --- the monitor, and what goes to it ---
@@ -203,20 +198,18 @@ void apply(Studio& studio) {
 void use_projector_monitor(Studio& studio, const std::string& id) {
     const auto monitor = find_monitor(studio.monitors, id);
     if (monitor && studio.monitors.size() < 2) {
-        notify(studio,
-               {Notice::Level::warning,
-                monitor->name + " is the only monitor, so it does not become the projector.",
-                "The projector's picture would cover this window.",
-                "Plug the projector in as a second monitor, or look at its picture in the "
-                "Projector view."});
+        tell_warning(studio,
+                     monitor->name + " is the only monitor, so it does not become the projector.",
+                     "The projector's picture would cover this window.",
+                     "Plug the projector in as a second monitor, or look at its picture in the "
+                     "Projector view.");
         return;
     }
     if (const Monitor* twin = monitor ? twin_of(studio.monitors, *monitor) : nullptr) {
-        notify(studio,
-               {Notice::Level::warning,
-                monitor->name + " does not become the projector.",
-                "It shows the same part of the desktop as " + twin->name + ".",
-                "Extend the desktop to the projector instead of mirroring it."});
+        tell_warning(studio,
+                     monitor->name + " does not become the projector.",
+                     "It shows the same part of the desktop as " + twin->name + ".",
+                     "Extend the desktop to the projector instead of mirroring it.");
         return;
     }
     keep_projector(studio, id);

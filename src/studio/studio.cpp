@@ -44,7 +44,7 @@ void commit(Studio& studio, const SessionCommand& command) {
     try {
         studio.session.execute(command);
     } catch (const std::exception& error) {
-        notify(studio, {Notice::Level::error, label + " was not done.", error.what(), ""});
+        tell_error(studio, label + " was not done.", error.what());
         return;
     }
     log_line(LogLevel::info, "command: " + text_of(command));
@@ -190,16 +190,47 @@ void notify(Studio& studio, Notice notice) {
     studio.notices.push_back(std::move(notice));
 }
 
+void tell_info(
+    Studio& studio, std::string what, std::string cause, std::string fix, double until_s) {
+    notify(studio,
+           {Notice::Level::info, std::move(what), std::move(cause), std::move(fix), until_s});
+}
+
+void tell_warning(
+    Studio& studio, std::string what, std::string cause, std::string fix, double until_s) {
+    notify(studio,
+           {Notice::Level::warning, std::move(what), std::move(cause), std::move(fix), until_s});
+}
+
+void tell_error(Studio& studio, std::string what, std::string cause, std::string fix) {
+    notify(studio, {Notice::Level::error, std::move(what), std::move(cause), std::move(fix)});
+}
+
+std::string in_words(const std::exception_ptr& why) {
+    try {
+        std::rethrow_exception(why);
+    } catch (const std::exception& error) {
+        return error.what();
+    }
+}
+
 void notify_failure(Studio& studio, const std::string& what, const std::exception_ptr& why) {
     try {
         std::rethrow_exception(why);
     } catch (const Cancelled&) {
         return;
     } catch (const Refused& refused) {
-        notify(studio, {Notice::Level::error, what, refused.why(), refused.fix()});
+        tell_error(studio, what, refused.why(), refused.fix());
     } catch (const std::exception& error) {
-        notify(studio, {Notice::Level::error, what, error.what(), ""});
+        tell_error(studio, what, error.what());
     }
+}
+
+void in_background(Studio& studio, std::string what_failed, Background::Work work) {
+    studio.background->run(std::move(work),
+                           [&studio, what = std::move(what_failed)](std::exception_ptr why) {
+                               notify_failure(studio, what, why);
+                           });
 }
 
 }  // namespace livery

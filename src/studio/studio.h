@@ -300,7 +300,22 @@ void select_part(Studio& studio, int part);
 Document shown_document(const Studio& studio);
 
 void notify(Studio& studio, Notice notice);
+void tell_info(Studio& studio,
+               std::string what,
+               std::string cause = "",
+               std::string fix = "",
+               double until_s = 0.0);
+void tell_warning(Studio& studio,
+                  std::string what,
+                  std::string cause = "",
+                  std::string fix = "",
+                  double until_s = 0.0);
+void tell_error(Studio& studio, std::string what, std::string cause = "", std::string fix = "");
+/// What an exception says.
+std::string in_words(const std::exception_ptr& why);
 /// `what` did not come about, and why; nothing for Cancelled.
 void notify_failure(Studio& studio, const std::string& what, const std::exception_ptr& why);
+/// Work on the background thread; a notice says `what_failed` when it does.
+void in_background(Studio& studio, std::string what_failed, Background::Work work);
 
 }  // namespace livery

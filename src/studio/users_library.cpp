@@ -64,11 +64,7 @@ void start_reading(Studio& studio) {
             };
         },
         [&studio](const std::exception_ptr& why) {
-            try {
-                std::rethrow_exception(why);
-            } catch (const std::exception& error) {
-                studio.panels.of<LibraryReadings>().problem = error.what();
-            }
+            studio.panels.of<LibraryReadings>().problem = in_words(why);
             finish_reading(studio);
         });
 }

@@ -32,8 +32,7 @@ TEST(Environment, ThatIsNoMapIsRefusedWhenItIsChosen) {
     };
     EXPECT_NE(refusal(lit_by(junk)).find("junk.hdr"), std::string::npos) << refusal(lit_by(junk));
     write_exr(folder / "square.exr", ImageF(8, 8, 3, 0.5f));
-    EXPECT_NE(refusal(lit_by(folder / "square.exr")).find("twice as wide as high"),
-              std::string::npos);
+    EXPECT_TRUE(says(refusal(lit_by(folder / "square.exr")), "twice as wide as high"));
     // Nor does a look bring one along.
     Look look = car().looks[0].look;
     look.name = "imported";
@@ -56,9 +55,7 @@ TEST(Environment, ThatGoesBadLaterIsLeftOutAndTold) {
     EXPECT_EQ(scene.part_materials.size(), product->mesh.parts.size());
     const auto told = drawing_problems(document);
     ASSERT_EQ(told.size(), 1u);
-    EXPECT_NE(told[0].find(car().looks[0].look.name + " is lit without its environment"),
-              std::string::npos)
-        << told[0];
+    EXPECT_TRUE(says(told[0], car().looks[0].look.name + " is lit without its environment"));
     EXPECT_NE(told[0].find("sky.exr"), std::string::npos) << told[0];
     // Others are as they were.
     EXPECT_TRUE(drawing_problems(document, document.looks[1]).empty());

@@ -3,18 +3,17 @@
 #include "session/session.h"
 
 #include <clocale>
-#include <csignal>
 #include <cstdlib>
 #include <iostream>
 
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 
 #include "core/error.h"
 #include "core/json.h"
 #include "scene/library.h"
 #include "session/session_file.h"
 #include "session/session_script.h"
+#include "support/bad_disk.h"
 #include "support/file_error.h"
 #include "support/memory_folder.h"
 #include "support/temporary_folder.h"
@@ -155,26 +154,6 @@ TEST(Session, UnsavedIsSavedUnderAName) {
     EXPECT_EQ(Session::open(folder / "a.livery").document().exposure_ev, 2.0);
 }
 
-/// No file can grow: what a full disk does.
-class NoRoom {
-  public:
-    NoRoom() {
-        handler_ = std::signal(SIGXFSZ, SIG_IGN);
-        ::getrlimit(RLIMIT_FSIZE, &before_);
-        rlimit none = before_;
-        none.rlim_cur = 1;
-        ::setrlimit(RLIMIT_FSIZE, &none);
-    }
-    ~NoRoom() {
-        ::setrlimit(RLIMIT_FSIZE, &before_);
-        std::signal(SIGXFSZ, handler_);
-    }
-
-  private:
-    rlimit before_{};
-    void (*handler_)(int) = nullptr;
-};
-
 TEST(Session, GoesOnSavingWhenThereIsRoomAgain) {
     const TemporaryFolder folder;
     Session session = Session::open(folder / "a.livery");
@@ -182,7 +161,7 @@ TEST(Session, GoesOnSavingWhenThereIsRoomAgain) {
     std::optional<std::string> problem;
     bool again = true;
     {
-        const NoRoom no_room;
+        const FullDisk full(1);
         session.execute(SetExposure{1.0});
         session.execute(SetExposure{2.0});
         problem = session.save_problem();

@@ -13,13 +13,14 @@
 #include "core/paths.h"
 #include "scene/library.h"
 #include "studio/artwork/artwork_edit.h"
-#include "studio/kit/widgets.h"
 #include "studio/kit/ui_map.h"
+#include "studio/kit/widgets.h"
 #include "studio/paint/library_panel.h"
 #include "studio/paint/swatches.h"
 #include "studio/panels_fixture.h"
 #include "studio/presenting/ballot_panel.h"
 #include "studio/studio.h"
+#include "support/message_of.h"
 #include "support/temporary_folder.h"
 
 namespace livery {
@@ -220,8 +221,7 @@ TEST_F(Panels, AJunkEnvironmentIsRefusedWhenItIsChosenAndToldWhenItGoesBad) {
     commit(studio, SetEnvironment{studio.shown_look, {junk.string(), 0.0, 1.0}});
     EXPECT_EQ(studio.session.revision(), before);
     ASSERT_EQ(studio.notices.size(), 1u);
-    EXPECT_NE(studio.notices[0].cause.find("junk.hdr"), std::string::npos)
-        << studio.notices[0].cause;
+    EXPECT_TRUE(says(studio.notices[0].cause, "junk.hdr"));
     frames(studio, draw_of("Light"), 2);
 }
 
@@ -374,9 +374,7 @@ TEST_F(Panels, ArtworkThatAPaintCannotWearIsRefusedWithTheReason) {
     EXPECT_EQ(studio.session.revision(), before);
     ASSERT_EQ(studio.notices.size(), 1u);
     EXPECT_EQ(studio.notices[0].what, "\"print\" was not changed.");
-    EXPECT_NE(studio.notices[0].cause.find("a map of roughness changes nothing on it"),
-              std::string::npos)
-        << studio.notices[0].cause;
+    EXPECT_TRUE(says(studio.notices[0].cause, "a map of roughness changes nothing on it"));
     // In a paint of its own it can.
     print.paint = "solid white";
     set_artwork_at(studio, 0, print);

@@ -1,8 +1,11 @@
-// What an exception says.
+// What an exception says, and whether a text says something.
 #pragma once
 
 #include <exception>
 #include <string>
+#include <string_view>
+
+#include <gtest/gtest.h>
 
 namespace livery {
 
@@ -15,6 +18,12 @@ std::string message_of(Call&& call) {
         return error.what();
     }
     return "nothing thrown";
+}
+
+/// That the text holds the other.
+inline ::testing::AssertionResult says(std::string_view text, std::string_view part) {
+    if (text.find(part) != std::string_view::npos) return ::testing::AssertionSuccess();
+    return ::testing::AssertionFailure() << "\"" << text << "\" does not say \"" << part << "\"";
 }
 
 }  // namespace livery

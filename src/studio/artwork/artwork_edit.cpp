@@ -29,11 +29,10 @@ const Material* paint_below(Studio& studio, const std::string& part) {
 }
 
 void tell_refused(Studio& studio, const Artwork& artwork, const std::string& why) {
-    notify(studio,
-           {Notice::Level::error,
-            fmt::format("\"{}\" was not changed.", shown_name(artwork)),
-            sentence(why),
-            "Choose another paint, or another use of the picture."});
+    tell_error(studio,
+               fmt::format("\"{}\" was not changed.", shown_name(artwork)),
+               sentence(why),
+               "Choose another paint, or another use of the picture.");
 }
 
 Artwork placed_at(const Studio& studio, std::size_t at, const PickedPoint& point) {
@@ -194,25 +193,23 @@ void ask_for_picture(Studio& studio,
                      const std::string& title,
                      const std::filesystem::path& start,
                      std::function<void(const std::filesystem::path&)> then) {
-    FileQuestion question;
-    question.kind = FileQuestion::Kind::open;
-    question.title = title;
-    question.action = "Open";
-    question.suffixes = {".png", ".jpg", ".jpeg", ".tif", ".tiff", ".exr"};
-    question.suggested = start.empty() ? pictures_folder() : start;
-    question.then = [&studio, then = std::move(then)](const std::filesystem::path& file) {
-        try {
-            load_artwork_picture(file);
-            then(file);
-        } catch (const FileError& error) {
-            notify(studio,
-                   {Notice::Level::error,
-                    "The picture was not taken.",
-                    error.what(),
-                    "Choose another file: PNG, JPEG, TIFF or EXR."});
-        }
-    };
-    studio.file_dialog->ask(std::move(question));
+    studio.file_dialog->ask(
+        {.kind = FileQuestion::Kind::open,
+         .title = title,
+         .action = "Open",
+         .suffixes = {".png", ".jpg", ".jpeg", ".tif", ".tiff", ".exr"},
+         .suggested = start.empty() ? pictures_folder() : start,
+         .then = [&studio, then = std::move(then)](const std::filesystem::path& file) {
+             try {
+                 load_artwork_picture(file);
+                 then(file);
+             } catch (const FileError& error) {
+                 tell_error(studio,
+                            "The picture was not taken.",
+                            error.what(),
+                            "Choose another file: PNG, JPEG, TIFF or EXR.");
+             }
+         }});
 }
 
 bool is_placing(const Studio& studio) {

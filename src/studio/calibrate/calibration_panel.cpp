@@ -67,15 +67,9 @@ void fact(const char* label, const std::string& value, const std::string& whole 
 }  // namespace
 
 const ImVec4& colour_of(Grade grade) {
-    switch (grade) {
-        case Grade::good:
-            return colours::good;
-        case Grade::usable:
-            return colours::warning;
-        case Grade::bad:
-            return colours::error;
-    }
-    return colours::text;
+    return grade == Grade::good     ? colours::good
+           : grade == Grade::usable ? colours::warning
+                                    : colours::error;
 }
 
 void draw_figures(const std::vector<GradedFigure>& figures) {
@@ -230,14 +224,13 @@ void draw_bench_choice(Studio& studio, bool calibrating) {
             name_last_item("bench:" + name);
         }
         if (named(ImGui::Selectable("File…"), "bench:file") && studio.file_dialog) {
-            FileQuestion question;
-            question.title = "Open a bench";
-            question.action = "Open";
-            question.suffixes = {".json"};
-            question.then = [&studio](const std::filesystem::path& file) {
-                commit(studio, SetBench{std::filesystem::absolute(file).string()});
-            };
-            studio.file_dialog->ask(std::move(question));
+            studio.file_dialog->ask({.title = "Open a bench",
+                                     .action = "Open",
+                                     .suffixes = {".json"},
+                                     .then = [&studio](const std::filesystem::path& file) {
+                                         commit(studio,
+                                                SetBench{std::filesystem::absolute(file).string()});
+                                     }});
         }
         ImGui::EndCombo();
     }
@@ -302,14 +295,14 @@ void ask_for_projector(Studio& studio, const std::filesystem::path& folder) {
             "its pose in front of the mock-up. A copy is kept with the calibration.");
     };
     question.then = [&studio, folder](const std::filesystem::path& camera_file) {
-        studio.background->run(
-            [&studio, folder, camera_file](const Progress&) -> Background::Then {
-                add_projector(folder, camera_file);
-                return [&studio, folder] { commit(studio, SetCalibration{folder.string()}); };
-            },
-            [&studio](const std::exception_ptr& why) {
-                notify_failure(studio, "The calibration was not loaded.", why);
-            });
+        in_background(studio,
+                      "The calibration was not loaded.",
+                      [&studio, folder, camera_file](const Progress&) -> Background::Then {
+                          add_projector(folder, camera_file);
+                          return [&studio, folder] {
+                              commit(studio, SetCalibration{folder.string()});
+                          };
+                      });
     };
     studio.file_dialog->ask(std::move(question));
 }
@@ -355,14 +348,12 @@ void draw_kept(Studio& studio) {
     if (!listed) offer(readable_calibration(short_name(in_use)), in_use, in_use.string());
     offer("None: uncorrected", {}, "The picture goes out as plain sRGB.");
     if (button("Load calibration folder…", "load-calibration") && studio.file_dialog) {
-        FileQuestion question;
-        question.kind = FileQuestion::Kind::folder;
-        question.title = "Load a calibration";
-        question.action = "Load";
-        question.then = [&studio](const std::filesystem::path& folder) {
-            load_calibration(studio, std::filesystem::absolute(folder));
-        };
-        studio.file_dialog->ask(std::move(question));
+        studio.file_dialog->ask({.kind = FileQuestion::Kind::folder,
+                                 .title = "Load a calibration",
+                                 .action = "Load",
+                                 .then = [&studio](const std::filesystem::path& folder) {
+                                     load_calibration(studio, std::filesystem::absolute(folder));
+                                 }});
     }
 }
 

@@ -52,13 +52,12 @@ void start_first_calibration(Studio& studio) {
     if (!needs_first_calibration(studio.session)) return;
     studio.bench->start_calibration();
     calibration_of(studio).started_by_itself = true;
-    notify(studio,
-           {Notice::Level::info,
-            kCalibrating,
-            "There is no calibration yet. This happens beside your work: a minute or two where "
-            "nothing else is done, longer while you work.",
-            "Until it is done, pictures go to the projector uncorrected.",
-            studio.now_s + 3600.0});
+    tell_info(studio,
+              kCalibrating,
+              "There is no calibration yet. This happens beside your work: a minute or two where "
+              "nothing else is done, longer while you work.",
+              "Until it is done, pictures go to the projector uncorrected.",
+              studio.now_s + 3600.0);
 }
 
 /// Loads what a calibration that has ended made, whoever asked for it, and tells why there is none.
@@ -80,11 +79,10 @@ void take_calibration(Studio& studio) {
     // The panel tells the person who asked; nobody asked for this one.
     if (!calibrating.refused_why.empty() && by_itself) {
         take_back_notice();
-        notify(studio,
-               {Notice::Level::error,
-                "The simulated bench could not be calibrated; pictures stay uncorrected.",
-                sentence(calibrating.refused_why),
-                sentence(calibrating.refused_fix)});
+        tell_error(studio,
+                   "The simulated bench could not be calibrated; pictures stay uncorrected.",
+                   sentence(calibrating.refused_why),
+                   sentence(calibrating.refused_fix));
     }
     if (!calibrating.finished || *calibrating.finished == calibration_of(studio).taken) return;
     calibration_of(studio).taken = *calibrating.finished;

@@ -86,12 +86,11 @@ void move(Studio& studio, const Way& way, double step_px) {
         state.undo.push_back(std::exchange(state.view, to));
         state.redo.clear();
     } catch (const std::invalid_argument&) {
-        notify(studio,
-               {Notice::Level::warning,
-                "The mock-up would leave the projector's picture.",
-                "",
-                "Start over, or calibrate anew where it stands now.",
-                studio.now_s + 10.0});
+        tell_warning(studio,
+                     "The mock-up would leave the projector's picture.",
+                     "",
+                     "Start over, or calibrate anew where it stands now.",
+                     studio.now_s + 10.0);
     }
 }
 
@@ -122,12 +121,11 @@ void keep(Studio& studio) {
                 nudge_of(studio).keeping = false;
                 show_nudge(studio, false);
                 commit(studio, SetCalibration{folder.string()});
-                notify(studio,
-                       {Notice::Level::info,
-                        "The moved mock-up is kept as a calibration of its own.",
-                        "",
-                        "Undo, or Calibrate > Go back to, returns to the one before.",
-                        studio.now_s + 15.0});
+                tell_info(studio,
+                          "The moved mock-up is kept as a calibration of its own.",
+                          "",
+                          "Undo, or Calibrate > Go back to, returns to the one before.",
+                          studio.now_s + 15.0);
             };
         },
         [&studio](const std::exception_ptr& why) {
@@ -234,12 +232,11 @@ void show_nudge(Studio& studio, bool shown) {
     }
     if (!studio.setup || !studio.setup->calibration ||
         studio.session.document().calibration.empty()) {
-        notify(studio,
-               {Notice::Level::warning,
-                "There is no calibration whose mock-up could be moved.",
-                "Its pose is found by photographs first; by hand it is only corrected.",
-                "Calibrate first.",
-                studio.now_s + 15.0});
+        tell_warning(studio,
+                     "There is no calibration whose mock-up could be moved.",
+                     "Its pose is found by photographs first; by hand it is only corrected.",
+                     "Calibrate first.",
+                     studio.now_s + 15.0);
         return;
     }
     stop_trying(studio);

@@ -1,6 +1,7 @@
 #include "studio/capture/capture_panel.h"
 
 #include <algorithm>
+#include <array>
 #include <cfloat>
 #include <charconv>
 #include <stdexcept>
@@ -401,23 +402,9 @@ void draw_capture_panel(Studio& studio) {
 namespace {
 
 const char* name_of(Doing doing) {
-    switch (doing) {
-        case Doing::nothing:
-            return "nothing";
-        case Doing::opening:
-            return "opening";
-        case Doing::watching:
-            return "watching";
-        case Doing::preflight:
-            return "preflight";
-        case Doing::fitting:
-            return "fitting";
-        case Doing::capturing:
-            return "capturing";
-        case Doing::checking:
-            return "checking";
-    }
-    return "nothing";
+    constexpr std::array names{
+        "nothing", "opening", "watching", "preflight", "fitting", "capturing", "checking"};
+    return names[static_cast<std::size_t>(doing)];
 }
 
 /// What the column tells of a trouble.

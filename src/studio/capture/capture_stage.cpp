@@ -16,16 +16,9 @@ namespace {
 using Doing = CaptureView::Doing;
 using Picture = std::shared_ptr<const Image8>;
 
-unsigned texture_of(CapturePanelState& state, const Picture& picture) {
+unsigned texture_in(CapturePanelState& state, const Picture& picture) {
     Texture2D& texture = state.textures[picture];
-    if (!texture) {
-        Image8 rgba(picture->width, picture->height, 4, 255);
-        for (std::size_t i = 0; i < picture->pixel_count(); ++i)
-            std::copy_n(&picture->values[3 * i], 3, &rgba.values[4 * i]);
-        texture =
-            Texture2D({picture->width, picture->height}, TexelFormat::rgba8, TexelFilter::linear);
-        texture.upload(std::span<const std::uint8_t>(rgba.values));
-    }
+    if (!texture) texture = texture_of(*picture);
     return texture.name();
 }
 
@@ -59,7 +52,7 @@ void draw_fitted(CapturePanelState& state,
                     height = scale * static_cast<float>(picture->height);
         const ImVec2 from{corner.x + 0.5f * (box.x - width), corner.y + 0.5f * (box.y - height)};
         draw.AddImage(
-            imgui_texture(texture_of(state, picture)), from, {from.x + width, from.y + height});
+            imgui_texture(texture_in(state, picture)), from, {from.x + width, from.y + height});
     }
     const ImVec2 at{corner.x + em(0.5f), corner.y + em(0.35f)};
     const ImVec2 size = ImGui::CalcTextSize(caption);
@@ -119,7 +112,7 @@ void draw_tiles(Studio& studio) {
                             each.photographs == 1 ? "" : "s"));
         if (ImGui::IsRectVisible(corner, {corner.x + tile.x, corner.y + tile.y + label})) {
             ImDrawList& draw = *ImGui::GetWindowDrawList();
-            draw.AddImage(imgui_texture(texture_of(state, each.seen)),
+            draw.AddImage(imgui_texture(texture_in(state, each.seen)),
                           corner,
                           {corner.x + tile.x, corner.y + tile.y});
             ImGui::PushFont(small_font());

@@ -167,13 +167,11 @@ void draw_what_check_found(const CaptureView& view) {
 }
 
 /// The large button: the next step, or the end.
-void draw_next(Studio& studio, bool can_show) {
+void draw_next(Studio& studio, bool ready) {
     CaptureThread& capture = *studio.capture;
     const CapturePanelState& state = studio.panels.of<CapturePanelState>();
     const CaptureView& view = state.view;
     const bool by_hand = state.chosen->kind == CameraChoice::Kind::folder;
-    const bool ready =
-        can_show && view.doing != CaptureView::Doing::opening && (!view.camera.empty() || by_hand);
     const auto next = next_step(view);
     const bool finished = view.finished && view.step(CaptureStep::colour).done;
     begin_disabled(!ready);
@@ -337,7 +335,7 @@ void draw_capture_steps(Studio& studio, bool can_show) {
         draw_running(studio);
     } else {
         if (!by_hand) draw_effort(studio);
-        draw_next(studio, can_show);
+        draw_next(studio, ready);
         draw_trouble(view);
         if (!view.finished || is_accepted(state)) {
             draw_drift(studio, ready && !by_hand);

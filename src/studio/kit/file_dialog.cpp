@@ -278,19 +278,16 @@ void FileDialog::draw() {
     const std::string title = state.question->title + "###file-dialog";
     if (state.to_open) ImGui::OpenPopup(title.c_str());
     state.to_open = false;
-    const ImVec2 window = ImGui::GetMainViewport()->Size;
-    ImGui::SetNextWindowSize({std::min(em(44.0f), 0.94f * window.x), 0.0f});
-    const ImVec2 middle = ImGui::GetMainViewport()->GetCenter();
-    ImGui::SetNextWindowPos(middle, ImGuiCond_Always, {0.5f, 0.5f});
     bool open = true;
-    if (!ImGui::BeginPopupModal(title.c_str(), &open, ImGuiWindowFlags_NoResize)) {
+    if (!begin_modal(title, em(44.0f), &open)) {
         state.question.reset();
         return;
     }
     state.draw_choices();
     state.draw_way();
     const float others = state.question->choices ? em(20.0f) : em(12.0f);
-    bool agreed = state.draw_entries(std::clamp(window.y - others, em(6.0f), em(18.0f)));
+    bool agreed = state.draw_entries(
+        std::clamp(ImGui::GetMainViewport()->Size.y - others, em(6.0f), em(18.0f)));
     agreed = state.draw_name() || agreed;
     if (!state.problem.empty()) warning_text(state.problem);
     if (state.asking_to_overwrite) warning_text("This file exists already. Replace it?");
@@ -314,10 +311,7 @@ void draw_question(std::optional<Question>& question) {
     if (!question) return;
     const std::string title = question->what + "###question";
     if (std::exchange(question->to_open, false)) ImGui::OpenPopup(title.c_str());
-    const ImVec2 window = ImGui::GetMainViewport()->Size;
-    ImGui::SetNextWindowSize({std::min(em(30.0f), 0.94f * window.x), 0.0f});
-    ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Always, {0.5f, 0.5f});
-    if (!ImGui::BeginPopupModal(title.c_str(), nullptr, ImGuiWindowFlags_NoResize)) {
+    if (!begin_modal(title, em(30.0f))) {
         question.reset();
         return;
     }

@@ -17,12 +17,12 @@ namespace livery {
 struct FileQuestion {
     enum class Kind { open, save, folder };
     Kind kind = Kind::open;
-    std::string title;                  ///< "Import look"
-    std::string action;                 ///< what the button says: "Import"
-    std::vector<std::string> suffixes;  ///< shown in the list; empty: all
-    bool only_new = false;              ///< a file that is there is refused
+    std::string title;                       ///< "Import look"
+    std::string action;                      ///< what the button says: "Import"
+    std::vector<std::string> suffixes = {};  ///< shown in the list; empty: all
+    bool only_new = false;                   ///< a file that is there is refused
     /// A name, or a folder, or both, to start with.
-    std::filesystem::path suggested;
+    std::filesystem::path suggested = {};
     std::function<void(const std::filesystem::path&)> then;  ///< overwriting is already agreed to
     /// Draws choices above the list and changes suffixes and the suggested name by them; a name
     /// that was typed stays, with the new suffix.

@@ -2,6 +2,7 @@
 // for. Nothing that makes a picture: that belongs to the session.
 #pragma once
 
+#include <charconv>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -25,5 +26,14 @@ std::string setting(const UserSettings& settings, const std::string& name);
 /// Keeps it, in the file as well; where that cannot be written the log says so and it is kept until
 /// the program ends.
 void keep_setting(UserSettings& settings, const std::string& name, const std::string& value);
+
+/// A number that was kept as text; what cannot be read, or is not from `low` to `high`, is as if it
+/// had not been kept.
+template <typename Number>
+void restore(const std::string& text, Number& value, Number low, Number high) {
+    Number read{};
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), read);
+    if (error == std::errc() && read >= low && read <= high) value = read;
+}
 
 }  // namespace livery

@@ -302,9 +302,44 @@ bool section_header(const char* label, bool* keep) {
     return open;
 }
 
+bool begin_page(const char* title, bool& open, const ImVec2& size) {
+    const ImVec2 room = ImGui::GetMainViewport()->WorkSize;
+    ImGui::SetNextWindowPos(
+        ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Appearing, {0.5f, 0.5f});
+    ImGui::SetNextWindowSize({std::min(size.x, 0.92f * room.x), std::min(size.y, 0.9f * room.y)},
+                             ImGuiCond_Appearing);
+    return ImGui::Begin(
+        title, &open, ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings);
+}
+
+bool begin_modal(const std::string& title, float width, bool* open) {
+    const ImGuiViewport& viewport = *ImGui::GetMainViewport();
+    ImGui::SetNextWindowSize({std::min(width, 0.95f * viewport.Size.x), 0.0f});
+    ImGui::SetNextWindowPos(viewport.GetCenter(), ImGuiCond_Always, {0.5f, 0.5f});
+    return ImGui::BeginPopupModal(title.c_str(), open, ImGuiWindowFlags_NoResize);
+}
+
 void progress_bar(double fraction, const std::string& text) {
     ImGui::ProgressBar(
         static_cast<float>(std::clamp(fraction, 0.0, 1.0)), {-FLT_MIN, 0.0f}, text.c_str());
+}
+
+Image8 opaque(const Image8& rgb) {
+    Image8 rgba(rgb.width, rgb.height, 4, 255);
+    for (std::size_t i = 0; i < rgb.pixel_count(); ++i) {
+        std::copy_n(&rgb.values[3 * i], 3, &rgba.values[4 * i]);
+    }
+    return rgba;
+}
+
+Texture2D texture_of(const Image8& picture, TexelWrap wrap) {
+    Texture2D texture(TextureShape{picture.width, picture.height, 0, 1},
+                      TexelFormat::rgba8,
+                      TexelFilter::linear,
+                      wrap);
+    const auto& values = picture.channels == 4 ? picture.values : opaque(picture).values;
+    texture.upload(std::span<const std::uint8_t>(values));
+    return texture;
 }
 
 void* imgui_texture(unsigned name) {

@@ -9,6 +9,9 @@
 
 #include <glm/vec3.hpp>
 
+#include "core/image.h"
+#include "gl/handles.h"
+
 struct ImFont;
 struct ImVec4;
 
@@ -104,9 +107,17 @@ void vector_row(const char* label,
 /// A collapsing header in the panel's grey; `keep` (may be null) is set to false by its cross.
 bool section_header(const char* label, bool* keep = nullptr);
 
+/// A window over everything, in the middle when it appears; to be ended by ImGui::End().
+bool begin_page(const char* title, bool& open, const ImVec2& size);
+/// A dialog that has the window to itself, as high as what is in it.
+bool begin_modal(const std::string& title, float width, bool* open = nullptr);
+
 /// A bar with its fraction in words on top.
 void progress_bar(double fraction, const std::string& text);
 
+Image8 opaque(const Image8& rgb);  ///< with A, 255
+/// Of 3 or 4 channels, as Dear ImGui draws it.
+Texture2D texture_of(const Image8& picture, TexelWrap wrap = TexelWrap::clamp);
 /// An OpenGL texture as Dear ImGui names it.
 void* imgui_texture(unsigned name);
 

@@ -315,17 +315,7 @@ bool is_measuring_accuracy(const Studio& studio) {
 void draw_accuracy_page(Studio& studio) {
     AccuracyPage& page = page_of(studio);
     if (!page.open) return;
-    const ImVec2 room = ImGui::GetMainViewport()->WorkSize;
-    ImGui::SetNextWindowPos(
-        ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Appearing, {0.5f, 0.5f});
-    ImGui::SetNextWindowSize(
-        {std::min(em(58.0f), 0.92f * room.x), std::min(em(48.0f), 0.92f * room.y)},
-        ImGuiCond_Appearing);
-    if (ImGui::Begin("What accuracy costs",
-                     &page.open,
-                     ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings)) {
-        draw_inside(studio);
-    }
+    if (begin_page("What accuracy costs", page.open, {em(58.0f), em(48.0f)})) draw_inside(studio);
     ImGui::End();
 }
 

@@ -77,12 +77,7 @@ void ask_for_thumbnail(Studio& studio, const std::string& file) {
         return [&studio, file, picture] {
             LightingPanelState& panel = studio.panels.of<LightingPanelState>();
             if (panel.thumbnail_of != file) return;
-            Texture2D texture(TextureShape{picture.width, picture.height, 0, 1},
-                              TexelFormat::rgba8,
-                              TexelFilter::linear,
-                              TexelWrap::repeat);
-            texture.upload(std::span<const std::uint8_t>(picture.values));
-            panel.thumbnail = std::move(texture);
+            panel.thumbnail = texture_of(picture, TexelWrap::repeat);
         };
     };
     studio.background->run(load, [&studio, file](const std::exception_ptr& failure) {
@@ -117,11 +112,10 @@ void draw_thumbnail(const LightingPanelState& state, double rotation_rad) {
 void take_environment(Studio& studio, int look, const EnvironmentReference& chosen) {
     const auto take = [&studio, look, chosen](const std::optional<std::string>& problem) {
         if (!problem) return commit(studio, SetEnvironment{look, chosen});
-        notify(studio,
-               {Notice::Level::error,
-                "The environment was not taken.",
-                *problem,
-                "Choose an .hdr or .exr map, twice as wide as high."});
+        tell_error(studio,
+                   "The environment was not taken.",
+                   *problem,
+                   "Choose an .hdr or .exr map, twice as wide as high.");
     };
     if (!studio.background) return take(environment_problem(chosen));
     studio.background->run(

@@ -18,12 +18,8 @@ constexpr double kFade_s = 0.6;
 ReferenceTracing& tracing(const Studio& studio) { return studio.panels.of<ReferenceTracing>(); }
 
 FramePicture<Image8> with_texture(TexturePool& textures, std::shared_ptr<const Image8> drive) {
-    Image8 rgba(drive->width, drive->height, 4, 255);
-    for (std::size_t i = 0; i < drive->pixel_count(); ++i) {
-        std::copy_n(&drive->values[3 * i], 3, &rgba.values[4 * i]);
-    }
     auto slot = textures.lend(drive->width, drive->height);
-    slot->texture.upload(std::span<const std::uint8_t>(rgba.values));
+    slot->texture.upload(std::span<const std::uint8_t>(opaque(*drive).values));
     slot->ready = Fence::after_everything_so_far();
     return {std::move(drive), std::move(slot)};
 }

@@ -22,7 +22,7 @@ namespace livery {
 namespace {
 
 void tell(Studio& studio, const std::string& what, const std::exception& error) {
-    notify(studio, {Notice::Level::error, what, error.what(), ""});
+    tell_error(studio, what, error.what());
 }
 
 void import_look(Studio& studio, const std::filesystem::path& file) {
@@ -52,85 +52,73 @@ void ask_for_look_file(Studio& studio) {
 void ask_where_to_export_look(Studio& studio) {
     const int id = studio.shown_look;
     const std::string name = find_look(studio.session.document(), id)->look.name;
-    studio.file_dialog->ask({FileQuestion::Kind::save,
-                             "Export look",
-                             "Export",
-                             {".json"},
-                             false,
-                             documents_folder() / (file_name_of(name) + ".json"),
-                             [&studio, id, name](const auto& file) {
-                                 try {
-                                     const auto written =
-                                         export_look(studio.session.document(), id, file);
-                                     std::string more;
-                                     if (written.size() > 1) {
-                                         more =
-                                             fmt::format("{} paints of this session lie beside it.",
-                                                         written.size() - 1);
-                                     }
-                                     notify(studio,
-                                            {Notice::Level::info,
-                                             "Exported " + name + " to " + file.string() + ".",
-                                             more,
-                                             ""});
-                                 } catch (const std::exception& error) {
-                                     tell(studio, "The look was not exported.", error);
-                                 }
-                             }});
+    studio.file_dialog->ask(
+        {FileQuestion::Kind::save,
+         "Export look",
+         "Export",
+         {".json"},
+         false,
+         documents_folder() / (file_name_of(name) + ".json"),
+         [&studio, id, name](const auto& file) {
+             try {
+                 const auto written = export_look(studio.session.document(), id, file);
+                 std::string more;
+                 if (written.size() > 1) {
+                     more = fmt::format("{} paints of this session lie beside it.",
+                                        written.size() - 1);
+                 }
+                 tell_info(studio, "Exported " + name + " to " + file.string() + ".", more);
+             } catch (const std::exception& error) {
+                 tell(studio, "The look was not exported.", error);
+             }
+         }});
 }
 
 void ask_where_to_export_product(Studio& studio) {
-    FileQuestion question;
-    question.kind = FileQuestion::Kind::save;
-    question.title = "Export product with looks";
-    question.action = "Export";
-    question.suffixes = {".glb"};
-    question.suggested = documents_folder() / (file_name_of(studio.product->name) + ".glb");
-    question.then = [&studio](const std::filesystem::path& file) {
-        const Studio& now = studio;
-        try {
-            std::string left_out;
-            for (const std::string& note :
-                 export_product(now.session.document(), now.product, now.shown_look, file)) {
-                left_out += note + ". ";
-            }
-            notify(studio,
-                   {Notice::Level::info,
-                    fmt::format("Exported {} with {} looks to {}.",
-                                now.product->name,
-                                now.session.document().looks.size(),
-                                file.string()),
-                    left_out,
-                    ""});
-        } catch (const std::exception& error) {
-            tell(studio, "The product was not exported.", error);
-        }
-    };
-    studio.file_dialog->ask(std::move(question));
+    studio.file_dialog->ask(
+        {.kind = FileQuestion::Kind::save,
+         .title = "Export product with looks",
+         .action = "Export",
+         .suffixes = {".glb"},
+         .suggested = documents_folder() / (file_name_of(studio.product->name) + ".glb"),
+         .then = [&studio](const std::filesystem::path& file) {
+             const Studio& now = studio;
+             try {
+                 std::string left_out;
+                 for (const std::string& note :
+                      export_product(now.session.document(), now.product, now.shown_look, file)) {
+                     left_out += note + ". ";
+                 }
+                 tell_info(studio,
+                           fmt::format("Exported {} with {} looks to {}.",
+                                       now.product->name,
+                                       now.session.document().looks.size(),
+                                       file.string()),
+                           left_out);
+             } catch (const std::exception& error) {
+                 tell(studio, "The product was not exported.", error);
+             }
+         }});
 }
 
 void ask_where_to_save_session(Studio& studio) {
-    FileQuestion question;
-    question.kind = FileQuestion::Kind::save;
-    question.title = "Save session as";
-    question.action = "Save";
-    question.suffixes = {".livery"};
-    question.only_new = true;
-    question.suggested = documents_folder() / "session.livery";
-    question.then = [&studio](const std::filesystem::path& file) {
-        try {
-            studio.session.save_as(file);
-        } catch (const std::exception& error) {
-            tell(studio, "The session was not saved.", error);
-            return;
-        }
-        notify(studio,
-               {Notice::Level::info,
-                "The session goes on in " + file.string() + ".",
-                "What was saved before stays as it is.",
-                ""});
-    };
-    studio.file_dialog->ask(std::move(question));
+    studio.file_dialog->ask({.kind = FileQuestion::Kind::save,
+                             .title = "Save session as",
+                             .action = "Save",
+                             .suffixes = {".livery"},
+                             .only_new = true,
+                             .suggested = documents_folder() / "session.livery",
+                             .then = [&studio](const std::filesystem::path& file) {
+                                 try {
+                                     studio.session.save_as(file);
+                                 } catch (const std::exception& error) {
+                                     tell(studio, "The session was not saved.", error);
+                                     return;
+                                 }
+                                 tell_info(studio,
+                                           "The session goes on in " + file.string() + ".",
+                                           "What was saved before stays as it is.");
+                             }});
 }
 
 namespace {
@@ -228,20 +216,11 @@ void save(Studio& studio, int what, const std::filesystem::path& file) {
     studio.background->run(
         [&studio, write = writer_of(studio, what), file](const Progress&) -> Background::Then {
             write(file);
-            return [&studio, file] {
-                notify(studio, {Notice::Level::info, "Saved " + file.string() + ".", "", ""});
-            };
+            return [&studio, file] { tell_info(studio, "Saved " + file.string() + "."); };
         },
         [&studio](std::exception_ptr why) {
-            try {
-                std::rethrow_exception(why);
-            } catch (const std::exception& problem) {
-                notify(studio,
-                       {Notice::Level::error,
-                        "The picture was not saved.",
-                        problem.what(),
-                        "Save it in another folder."});
-            }
+            tell_error(
+                studio, "The picture was not saved.", in_words(why), "Save it in another folder.");
         });
 }
 

@@ -16,18 +16,9 @@ namespace {
 constexpr int kLargest_px = 512;
 
 void take_finished(LookThumbnailState& state) {
-    std::map<std::string, Image8> drawn;
-    {
-        const std::scoped_lock lock(state.inbox->mutex);
-        drawn.swap(state.inbox->drawn);
-    }
-    for (const auto& [name, picture] : drawn) {
+    for (const auto& [name, picture] : state.inbox->take()) {
         if (picture.channels != 4 || picture.empty()) continue;
-        Texture2D texture(TextureShape{picture.width, picture.height, 0, 1},
-                          TexelFormat::rgba8,
-                          TexelFilter::linear);
-        texture.upload(std::span<const std::uint8_t>(picture.values));
-        state.pictures.insert_or_assign(name, std::move(texture));
+        state.pictures.insert_or_assign(name, texture_of(picture));
     }
 }
 
@@ -62,11 +53,7 @@ void ask_for(Studio& studio, const SessionLook& look, const glm::ivec2& size_px)
                                size_px.y);
     studio.previews->request_thumbnail(
         *scene, view, [inbox = state.inbox, name = look.look.name](const Image8& rgba) {
-            {
-                const std::scoped_lock lock(inbox->mutex);
-                inbox->drawn[name] = rgba;
-            }
-            wake_main_thread();
+            inbox->put(name, rgba);
         });
 }
 

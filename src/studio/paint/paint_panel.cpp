@@ -266,11 +266,10 @@ void save_paint(Studio& studio) {
         studio.session.use(read_paint_library(studio.session.document().library));
         ImGui::CloseCurrentPopup();
         commit(studio, SetPaint{state.look, state.part_name, paint.name});
-        notify(studio,
-               {Notice::Level::info,
-                fmt::format("Saved \"{}\" to your library.", paint.name),
-                "",
-                "It lies in " + file.string() + "."});
+        tell_info(studio,
+                  fmt::format("Saved \"{}\" to your library.", paint.name),
+                  "",
+                  "It lies in " + file.string() + ".");
     } catch (const Refused& refused) {
         state.save_problem = fmt::format("Not saved: {}; {}.", refused.why(), refused.fix());
     } catch (const std::exception& error) {

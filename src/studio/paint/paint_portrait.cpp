@@ -27,14 +27,6 @@ PaintPortrait portrait_of(const Material& material, double light_rad) {
     return {material, paint_figures(material), lobe_curve(material, light_rad)};
 }
 
-std::string words_of(const std::exception_ptr& failure) {
-    try {
-        std::rethrow_exception(failure);
-    } catch (const std::exception& error) {
-        return error.what();
-    }
-}
-
 /// One at a time: while a slider is dragged the newest is asked for when the one before is there.
 void ask_for_portrait(Studio& studio, const Material& material) {
     PaintPortraitState& state = state_of(studio);
@@ -65,7 +57,7 @@ void ask_for_portrait(Studio& studio, const Material& material) {
             };
         },
         [&state](const std::exception_ptr& failure) {
-            state.problem = words_of(failure);
+            state.problem = in_words(failure);
             state.working = false;
         });
 }
@@ -150,11 +142,10 @@ void load_compared(Studio& studio, const std::filesystem::path& file) {
             };
         },
         [&studio](const std::exception_ptr& failure) {
-            notify(studio,
-                   {Notice::Level::error,
-                    "There is nothing to compare with.",
-                    words_of(failure),
-                    "Choose another file."});
+            tell_error(studio,
+                       "There is nothing to compare with.",
+                       in_words(failure),
+                       "Choose another file.");
         });
 }
 

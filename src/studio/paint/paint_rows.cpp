@@ -62,12 +62,11 @@ void draw_typed(Studio& studio, const Material& paint) {
     const auto lab = colour_in(state.text);
     if (!lab) {
         if (edited) {
-            notify(studio,
-                   {Notice::Level::warning,
-                    fmt::format("\"{}\" is no colour.", state.text),
-                    "",
-                    "Type one as #b01020, rgb(176, 16, 32), tomato, lab:45,30,-20 or "
-                    "xyz:20.1,15.2,5."});
+            tell_warning(studio,
+                         fmt::format("\"{}\" is no colour.", state.text),
+                         "",
+                         "Type one as #b01020, rgb(176, 16, 32), tomato, lab:45,30,-20 or "
+                         "xyz:20.1,15.2,5.");
         }
         return;
     }
@@ -100,26 +99,25 @@ void draw_asked_for(const Material& paint) {
 }
 
 void ask_for_chips(Studio& studio) {
-    studio.file_dialog->ask({FileQuestion::Kind::open,
-                             "Read colour chips",
-                             "Read",
-                             {".csv"},
-                             false,
-                             {},
-                             [&studio](const auto& file) {
-                                 PaintColourState& state =
-                                     studio.panels.of<PaintPanelState>().colour;
-                                 try {
-                                     state.chips = read_colour_chips(file);
-                                     state.chips_file = file.filename().string();
-                                 } catch (const FileError& error) {
-                                     notify(studio,
-                                            {Notice::Level::error,
-                                             "The colour chips were not read.",
-                                             error.what(),
-                                             "A chip has a name, and L, a, b or X, Y, Z or hex."});
-                                 }
-                             }});
+    studio.file_dialog->ask(
+        {FileQuestion::Kind::open,
+         "Read colour chips",
+         "Read",
+         {".csv"},
+         false,
+         {},
+         [&studio](const auto& file) {
+             PaintColourState& state = studio.panels.of<PaintPanelState>().colour;
+             try {
+                 state.chips = read_colour_chips(file);
+                 state.chips_file = file.filename().string();
+             } catch (const FileError& error) {
+                 tell_error(studio,
+                            "The colour chips were not read.",
+                            error.what(),
+                            "A chip has a name, and L, a, b or X, Y, Z or hex.");
+             }
+         }});
 }
 
 void draw_chips(Studio& studio, const Material& paint) {

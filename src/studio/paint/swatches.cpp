@@ -34,13 +34,22 @@ void draw_plain_disc(const Material& material, const ImVec2& corner, float side)
 
 }  // namespace
 
+void SwatchInbox::put(const std::string& key, const Image8& picture) {
+    {
+        const std::scoped_lock lock(mutex_);
+        drawn_[key] = picture;
+    }
+    wake_main_thread();
+}
+
+std::map<std::string, Image8> SwatchInbox::take() {
+    const std::scoped_lock lock(mutex_);
+    return std::exchange(drawn_, {});
+}
+
 void take_swatches(Studio& studio) {
     LibraryPanelState& state = studio.panels.of<LibraryPanelState>();
-    std::map<std::string, Image8> drawn;
-    {
-        const std::scoped_lock lock(state.inbox->mutex);
-        drawn.swap(state.inbox->drawn);
-    }
+    const auto drawn = state.inbox->take();
     if (state.swatches.size() + drawn.size() > kMostKept) {
         state.swatches.clear();
         state.asked.clear();
@@ -48,11 +57,7 @@ void take_swatches(Studio& studio) {
     for (const auto& [key, picture] : drawn) {
         state.asked.erase(key);
         if (picture.channels != 4 || picture.empty()) continue;
-        Texture2D texture(TextureShape{picture.width, picture.height, 0, 1},
-                          TexelFormat::rgba8,
-                          TexelFilter::linear);
-        texture.upload(std::span<const std::uint8_t>(picture.values));
-        state.swatches.insert_or_assign(key, std::move(texture));
+        state.swatches.insert_or_assign(key, texture_of(picture));
     }
 }
 
@@ -70,11 +75,7 @@ void draw_swatch(Studio& studio, const Material& material, const ImVec2& corner,
     if (!studio.previews || studio.opening || !state.asked.insert(key).second) return;
     studio.previews->request_swatch(
         material, size_px, [inbox = state.inbox, key](const Image8& rgba) {
-            {
-                const std::scoped_lock lock(inbox->mutex);
-                inbox->drawn[key] = rgba;
-            }
-            wake_main_thread();
+            inbox->put(key, rgba);
         });
 }
 

@@ -13,9 +13,14 @@ namespace livery {
 
 /// Where the preview's thread leaves swatches. Shared, because a swatch may be finished after the
 /// panel that asked for it is gone.
-struct SwatchInbox {
-    std::mutex mutex;
-    std::map<std::string, Image8> drawn;  ///< by the paint's parameters
+class SwatchInbox {
+  public:
+    void put(const std::string& key, const Image8& picture);  ///< and wakes the window
+    std::map<std::string, Image8> take();
+
+  private:
+    std::mutex mutex_;
+    std::map<std::string, Image8> drawn_;  ///< by the paint's parameters
 };
 
 /// Once a frame of the window: turns what has arrived into textures.

@@ -353,23 +353,20 @@ void draw_tally(const Round& round, const VoteCounts& tally) {
 
 void ask_where_to_export(Studio& studio, const Round& round, const VoteCounts& tally) {
     if (!studio.file_dialog) return;
-    FileQuestion question;
-    question.kind = FileQuestion::Kind::save;
-    question.title = "Export the result";
-    question.action = "Export";
-    question.suffixes = {".csv"};
-    question.suggested = fmt::format("round-{}.csv", round.id);
-    question.then = [&studio, designs = round.designs, tally](const std::filesystem::path& file) {
-        try {
-            write_text_file(file, tally_csv(designs, tally));
-            notify(studio,
-                   {Notice::Level::info, "The result was exported.", "", file.string() + "."});
-        } catch (const FileError& error) {
-            notify(studio,
-                   {Notice::Level::error, "The result was not exported.", error.what(), ""});
-        }
-    };
-    studio.file_dialog->ask(std::move(question));
+    studio.file_dialog->ask(
+        {.kind = FileQuestion::Kind::save,
+         .title = "Export the result",
+         .action = "Export",
+         .suffixes = {".csv"},
+         .suggested = fmt::format("round-{}.csv", round.id),
+         .then = [&studio, designs = round.designs, tally](const std::filesystem::path& file) {
+             try {
+                 write_text_file(file, tally_csv(designs, tally));
+                 tell_info(studio, "The result was exported.", "", file.string() + ".");
+             } catch (const FileError& error) {
+                 tell_error(studio, "The result was not exported.", error.what());
+             }
+         }});
 }
 
 namespace {

@@ -1,7 +1,6 @@
 #include "studio/presenting/presenting.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 #include <utility>
 
@@ -32,15 +31,6 @@ RoundDetails known_details(const std::filesystem::path& file,
 using Phase = PresentationPhase;
 
 constexpr double kBetweenReadings_s = 0.5;
-
-template <typename Number>
-void restore(
-    const UserSettings& settings, const char* name, Number& value, Number low, Number high) {
-    const std::string text = setting(settings, name);
-    Number read{};
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), read);
-    if (error == std::errc() && read >= low && read <= high) value = read;
-}
 
 /// ";cheap,precious;cold,warm;" as the settings keep it. What a hand has broken there is left out.
 std::vector<SemanticScale> listed_scales(std::string_view list) {
@@ -174,13 +164,13 @@ PresentingSettings& presenting_settings(Studio& studio) {
     PresentingSettings& settings = state.settings;
     if (std::exchange(state.settings_read, true)) return settings;
     const UserSettings& kept = studio.settings;
-    restore(kept, "presenting-adapt-s", settings.times.adapt_s, 0.2, 3600.0);
-    restore(kept, "presenting-look-s", settings.times.look_s, 0.2, 3600.0);
-    restore(kept, "presenting-grey-s", settings.times.grey_s, 0.2, 3600.0);
-    restore(kept, "presenting-passes", settings.passes, 0, 52);
-    restore(kept, "presenting-evaluators", settings.evaluators, 1, 1000);
-    restore(kept, "presenting-wave-size", settings.wave_size, 1, 1000);
-    restore(kept, "phones-port", settings.port, 0, 65535);
+    restore(setting(kept, "presenting-adapt-s"), settings.times.adapt_s, 0.2, 3600.0);
+    restore(setting(kept, "presenting-look-s"), settings.times.look_s, 0.2, 3600.0);
+    restore(setting(kept, "presenting-grey-s"), settings.times.grey_s, 0.2, 3600.0);
+    restore(setting(kept, "presenting-passes"), settings.passes, 0, 52);
+    restore(setting(kept, "presenting-evaluators"), settings.evaluators, 1, 1000);
+    restore(setting(kept, "presenting-wave-size"), settings.wave_size, 1, 1000);
+    restore(setting(kept, "phones-port"), settings.port, 0, 65535);
     settings.waves = setting(kept, "presenting-waves") == "yes";
     settings.asks_least = setting(kept, "presenting-least") == "yes";
     settings.asks_scales = setting(kept, "presenting-asks-scales") == "yes";
@@ -188,7 +178,7 @@ PresentingSettings& presenting_settings(Studio& studio) {
         settings.scales = listed_scales(list);
     }
     int seed = -1;
-    restore(kept, "presenting-seed", seed, 0, 1 << 30);
+    restore(setting(kept, "presenting-seed"), seed, 0, 1 << 30);
     if (seed >= 0) settings.seed = seed;
     if (const std::string network = setting(kept, "phones-network"); !network.empty()) {
         settings.network = network;
@@ -273,11 +263,10 @@ void send(Studio& studio, PresentationEvent event) {
     try {
         studio.ballots->record_step(presented.round.id, next, event);
     } catch (const std::exception& error) {
-        notify(studio,
-               {Notice::Level::error,
-                "The presentation stands still.",
-                std::string(error.what()),
-                "Make it possible to write the ballots' file, then go on."});
+        tell_error(studio,
+                   "The presentation stands still.",
+                   std::string(error.what()),
+                   "Make it possible to write the ballots' file, then go on.");
         // Asked again by the operator, not sixty times a second.
         if (event == PresentationEvent::tick) presented.state.paused = true;
         return;
@@ -327,11 +316,7 @@ void take_round(Studio& studio, Round round, PresentationPlan plan, Presentation
             };
         },
         [&studio](std::exception_ptr why) {
-            try {
-                std::rethrow_exception(why);
-            } catch (const std::exception& error) {
-                presenting(studio).problem = error.what();
-            }
+            presenting(studio).problem = in_words(why);
             notify_failure(studio, "The frozen frames cannot be shown.", why);
         });
 }
@@ -348,15 +333,15 @@ void find_presented_round(Studio& studio) {
         log_line(LogLevel::info, fmt::format("round {} goes on: {}", id, to_string(state.phase)));
         take_round(studio, std::move(found->round), std::move(found->plan), state);
         const std::size_t phones = phones_in(presenting(studio).seats).size();
-        notify(studio,
-               {Notice::Level::info,
-                fmt::format("Round {} goes on where it was.", id),
-                state.paused ? "It is paused: Go on, or the space bar, goes on." : "",
-                phones == 0 || state.phase == Phase::locked
-                    ? std::string()
-                    : fmt::format("{} that had joined cannot vote until you press Let phones vote.",
-                                  phones == 1 ? "A phone" : fmt::format("{} phones", phones)),
-                studio.now_s + 20.0});
+        tell_info(
+            studio,
+            fmt::format("Round {} goes on where it was.", id),
+            state.paused ? "It is paused: Go on, or the space bar, goes on." : "",
+            phones == 0 || state.phase == Phase::locked
+                ? std::string()
+                : fmt::format("{} that had joined cannot vote until you press Let phones vote.",
+                              phones == 1 ? "A phone" : fmt::format("{} phones", phones)),
+            studio.now_s + 20.0);
     } catch (const std::exception&) {
         notify_failure(
             studio, "The round that was under way cannot go on.", std::current_exception());
@@ -431,12 +416,11 @@ void watch_phones(Studio& studio) {
     keep_presenting_settings(studio);
     read_seats(studio, true);
     if (!anew) return;
-    notify(studio,
-           {Notice::Level::warning,
-            "The phones' server had ended; it was started again.",
-            "No vote is lost.",
-            "",
-            studio.now_s + 15.0});
+    tell_warning(studio,
+                 "The phones' server had ended; it was started again.",
+                 "No vote is lost.",
+                 "",
+                 studio.now_s + 15.0);
 }
 
 std::string time_in_words(double seconds) {

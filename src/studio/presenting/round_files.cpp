@@ -126,32 +126,29 @@ void write_round_report(Studio& studio, const Round& round) {
         studio.setup->calibration->id == round.calibration_id) {
         calibration = calibration_figures(*studio.setup->calibration);
     }
-    studio.background->run(
-        [&studio,
-         id = round.id,
-         seed = static_cast<std::uint64_t>(round.seed),
-         ballots = studio.ballots->file(),
-         calibration](const Progress&) -> Background::Then {
-            RoundReportSource source = round_report_source(ballots, id, seed);
-            source.calibration = calibration;
-            source.program = "livery " LIVERY_VERSION;
-            source.made_at = utc_now();
-            const ReportDocument document = round_report(source);
-            const auto folder = round_details_file(ballots, id).parent_path();
-            make_private_folder(folder);
-            write_text_file(folder / "report.html", html_of(document));
-            write_text_file(folder / "report.pdf", pdf_of(document).bytes);
-            return [&studio, folder] {
-                notify(studio,
-                       {Notice::Level::info,
-                        "The report is written.",
-                        (folder / "report.pdf").string(),
-                        "report.html beside it says the same for a browser."});
-            };
-        },
-        [&studio](std::exception_ptr why) {
-            notify_failure(studio, "The report could not be written.", why);
-        });
+    in_background(studio,
+                  "The report could not be written.",
+                  [&studio,
+                   id = round.id,
+                   seed = static_cast<std::uint64_t>(round.seed),
+                   ballots = studio.ballots->file(),
+                   calibration](const Progress&) -> Background::Then {
+                      RoundReportSource source = round_report_source(ballots, id, seed);
+                      source.calibration = calibration;
+                      source.program = "livery " LIVERY_VERSION;
+                      source.made_at = utc_now();
+                      const ReportDocument document = round_report(source);
+                      const auto folder = round_details_file(ballots, id).parent_path();
+                      make_private_folder(folder);
+                      write_text_file(folder / "report.html", html_of(document));
+                      write_text_file(folder / "report.pdf", pdf_of(document).bytes);
+                      return [&studio, folder] {
+                          tell_info(studio,
+                                    "The report is written.",
+                                    (folder / "report.pdf").string(),
+                                    "report.html beside it says the same for a browser.");
+                      };
+                  });
 }
 
 namespace {
@@ -191,25 +188,22 @@ const PresentedRound* to_record(const Studio& studio) {
 void warn(Studio& studio, const std::vector<SeatSees>& all) {
     const std::string unfair = unfair_in_words(all);
     if (unfair.empty()) return;
-    notify(studio,
-           {Notice::Level::warning,
-            unfair,
-            "Whoever sits there judges something else.",
-            "Abort the round, then move the eye or those seats, or let them vote in waves."});
+    tell_warning(studio,
+                 unfair,
+                 "Whoever sits there judges something else.",
+                 "Abort the round, then move the eye or those seats, or let them vote in waves.");
 }
 
 void write(Studio& studio, const PresentedRound& presented) {
     if (!studio.background || !studio.ballots) return;
-    studio.background->run(
-        [file = round_details_file(studio.ballots->file(), presented.round.id),
-         id = presented.round.id,
-         details = presented.details](const Progress&) -> Background::Then {
-            write_round_details(file, id, details);
-            return [] {};
-        },
-        [&studio](std::exception_ptr why) {
-            notify_failure(studio, "What the seats miss was not kept for the round's report.", why);
-        });
+    in_background(studio,
+                  "What the seats miss was not kept for the round's report.",
+                  [file = round_details_file(studio.ballots->file(), presented.round.id),
+                   id = presented.round.id,
+                   details = presented.details](const Progress&) -> Background::Then {
+                      write_round_details(file, id, details);
+                      return [] {};
+                  });
 }
 
 }  // namespace

@@ -131,28 +131,26 @@ void draw_verdict(Studio& studio, const Round& round) {
                 state.verdict = duel->words;
                 return draw_verdict(studio, round);
             }
-            studio.background->run(
-                [&studio, round, file = studio.ballots->file()](
-                    const Progress&) -> Background::Then {
-                    const auto seed = static_cast<std::uint64_t>(round.seed);
-                    const ClosedRound closed = read_closed_round(file, round.id, seed);
-                    const auto words = round_statistics(closed, seed).words;
-                    std::vector<std::string> of_scales;
-                    const auto scales =
-                        scale_statistics(closed.answers, round.scales, round.designs, seed);
-                    for (const ScaleFigures& figures : scales.scales) {
-                        of_scales.push_back(figures.words);
-                    }
-                    return [&studio, words, of_scales, id = round.id] {
-                        PresentingState& shown = presenting(studio);
-                        if (shown.verdict_round != id) return;
-                        shown.verdict = words;
-                        shown.scale_verdicts = of_scales;
-                    };
-                },
-                [&studio](std::exception_ptr why) {
-                    notify_failure(studio, "The verdict could not be found.", why);
-                });
+            in_background(studio,
+                          "The verdict could not be found.",
+                          [&studio, round, file = studio.ballots->file()](
+                              const Progress&) -> Background::Then {
+                              const auto seed = static_cast<std::uint64_t>(round.seed);
+                              const ClosedRound closed = read_closed_round(file, round.id, seed);
+                              const auto words = round_statistics(closed, seed).words;
+                              std::vector<std::string> of_scales;
+                              const auto scales = scale_statistics(
+                                  closed.answers, round.scales, round.designs, seed);
+                              for (const ScaleFigures& figures : scales.scales) {
+                                  of_scales.push_back(figures.words);
+                              }
+                              return [&studio, words, of_scales, id = round.id] {
+                                  PresentingState& shown = presenting(studio);
+                                  if (shown.verdict_round != id) return;
+                                  shown.verdict = words;
+                                  shown.scale_verdicts = of_scales;
+                              };
+                          });
         } catch (const std::exception& error) {
             state.verdict = error.what();
         }

@@ -167,7 +167,9 @@ std::string folder_name(const RoundSetup& setup) {
 /// For its report; and what cannot be shown fairly is named before anybody judges it.
 void keep_frozen_looks(Studio& studio, const Freezing& freezing, int id) {
     const Round round = studio.ballots->open_round().value();
-    studio.background->run(
+    in_background(
+        studio,
+        "Pictures for the round's report were not kept.",
         [&studio,
          id,
          round,
@@ -182,16 +184,12 @@ void keep_frozen_looks(Studio& studio, const Freezing& freezing, int id) {
                 presented->details = details;
                 const std::vector<int> unfair = unfair_looks(details);
                 if (unfair.empty()) return;
-                notify(studio,
-                       {Notice::Level::warning,
-                        fmt::format("This projector cannot show {} as wanted.",
-                                    fmt::join(unfair, ", ")),
-                        "Whoever judges it judges something else; the panel says how far off.",
-                        "Abort the round and lower the exposure, or darken the room."});
+                tell_warning(studio,
+                             fmt::format("This projector cannot show {} as wanted.",
+                                         fmt::join(unfair, ", ")),
+                             "Whoever judges it judges something else; the panel says how far off.",
+                             "Abort the round and lower the exposure, or darken the room.");
             };
-        },
-        [&studio](std::exception_ptr why) {
-            notify_failure(studio, "Pictures for the round's report were not kept.", why);
         });
 }
 
@@ -361,11 +359,10 @@ void show_qr_code(Studio& studio) {
         show(studio, key, picture);
     } catch (const std::exception& error) {
         state.qr_projected = false;
-        notify(studio,
-               {Notice::Level::warning,
-                "The QR code is not projected.",
-                error.what(),
-                "It is in the panel; show it on another screen."});
+        tell_warning(studio,
+                     "The QR code is not projected.",
+                     error.what(),
+                     "It is in the panel; show it on another screen.");
     }
 }
 
@@ -396,14 +393,13 @@ void pause_unseen(Studio& studio) {
     const bool gone = studio.projector->state() == ProjectorScreen::State::waiting_for_monitor;
     if (!gone && !studio.black) return;
     send(studio, Event::pause);
-    notify(studio,
-           {Notice::Level::warning,
-            gone ? "The presentation is paused: the projector is gone."
-                 : "The presentation is paused: the projector is black.",
-            gone ? studio.projector->why_waiting() : "",
-            gone ? "Plug it in; Repeat shows this look anew."
-                 : "Ctrl+B gives light again; Repeat shows this look anew.",
-            gone ? 0.0 : studio.now_s + 15.0});
+    tell_warning(studio,
+                 gone ? "The presentation is paused: the projector is gone."
+                      : "The presentation is paused: the projector is black.",
+                 gone ? studio.projector->why_waiting() : "",
+                 gone ? "Plug it in; Repeat shows this look anew."
+                      : "Ctrl+B gives light again; Repeat shows this look anew.",
+                 gone ? 0.0 : studio.now_s + 15.0);
 }
 
 }  // namespace
@@ -473,14 +469,13 @@ bool may_quit(Studio& studio) {
     if (studio.now_s < state.quits_until_s) return true;
     constexpr double kToAskAgain_s = 8.0;
     state.quits_until_s = studio.now_s + kToAskAgain_s;
-    notify(
+    tell_warning(
         studio,
-        {Notice::Level::warning,
-         fmt::format("Round {} is under way.", state.presented->round.id),
-         "Without the program the mock-up goes dark and phones cannot vote. Nothing is lost: the "
-         "round goes on here when the program is started again.",
-         "To end the program, quit once more now.",
-         state.quits_until_s});
+        fmt::format("Round {} is under way.", state.presented->round.id),
+        "Without the program the mock-up goes dark and phones cannot vote. Nothing is lost: the "
+        "round goes on here when the program is started again.",
+        "To end the program, quit once more now.",
+        state.quits_until_s);
     return false;
 }
 
@@ -504,7 +499,7 @@ void open_ballots(Studio& studio) {
         make_output_folder(folder);
         studio.ballots = std::make_unique<BallotStore>(folder / "ballots.sqlite");
     } catch (const std::exception& error) {
-        notify(studio, {Notice::Level::warning, "Ballots cannot be kept.", error.what(), ""});
+        tell_warning(studio, "Ballots cannot be kept.", error.what());
     }
 }
 

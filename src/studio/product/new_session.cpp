@@ -46,16 +46,6 @@ bool is_there(const std::filesystem::path& file) {
     return std::filesystem::exists(file, error);
 }
 
-std::string words_of(const std::exception_ptr& why) {
-    try {
-        std::rethrow_exception(why);
-    } catch (const Refused& refused) {
-        return refused.why() + "; " + refused.fix();
-    } catch (const std::exception& error) {
-        return error.what();
-    }
-}
-
 /// The page that asked, if it is still open.
 NewSession* page_of(Studio& studio, std::uint64_t number) {
     const bool still_open = page(studio) && page(studio)->number == number;
@@ -81,7 +71,7 @@ void create(Studio& studio, NewSession& asked) {
             NewSession* page = page_of(studio, number);
             if (!page) return notify_failure(studio, "The session was not made.", why);
             page->stage = NewSession::Stage::asking;
-            page->problem = words_of(why);
+            page->problem = in_words(why);
         });
 }
 
@@ -172,18 +162,17 @@ void begin_new_session(Studio& studio,
             NewSession* asked = its_page();
             if (!asked) return;
             asked->stage = NewSession::Stage::unreadable;
-            asked->problem = words_of(why);
+            asked->problem = in_words(why);
         });
 }
 
 void ask_for_product(Studio& studio) {
-    FileQuestion question;
-    question.title = "New session";
-    question.action = "Next";
-    question.suffixes = {".glb", ".gltf", ".ply", ".obj", ".json"};
-    question.suggested = documents_folder();
-    question.then = [&studio](const auto& file) { begin_new_session(studio, file); };
-    studio.file_dialog->ask(std::move(question));
+    studio.file_dialog->ask(
+        {.title = "New session",
+         .action = "Next",
+         .suffixes = {".glb", ".gltf", ".ply", ".obj", ".json"},
+         .suggested = documents_folder(),
+         .then = [&studio](const auto& file) { begin_new_session(studio, file); }});
 }
 
 void start_creating(Studio& studio) {
@@ -222,11 +211,7 @@ void ask_for_mesh_picture(Studio& studio, glm::ivec2 size_px) {
                 NewSession* page = page_of(studio, number);
                 if (!page) return;
                 page->picturing = false;
-                Texture2D texture(TextureShape{picture->width, picture->height, 0, 1},
-                                  TexelFormat::rgba8,
-                                  TexelFilter::linear);
-                texture.upload(std::span<const std::uint8_t>(picture->values));
-                page->picture = std::move(texture);
+                page->picture = texture_of(*picture);
             };
         },
         [&studio, number = asked.number](const std::exception_ptr& why) {

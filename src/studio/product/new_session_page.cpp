@@ -1,5 +1,6 @@
 // The page of a new session, over the window.
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -225,17 +226,15 @@ void draw_session_file(Studio& studio) {
     if (named(ImGui::InputText("##session", &file), "new-session:file")) asked.session = file;
     ImGui::SameLine();
     if (button("Change…", "new-session:change", "", em(6.0f))) {
-        FileQuestion question;
-        question.kind = FileQuestion::Kind::save;
-        question.title = "Where the session is saved";
-        question.action = "Choose";
-        question.suffixes = {".livery"};
-        question.only_new = true;
-        question.suggested = asked.session;
-        question.then = [&studio](const auto& chosen) {
-            if (page(studio)) page(studio)->session = chosen;
-        };
-        studio.file_dialog->ask(std::move(question));
+        studio.file_dialog->ask({.kind = FileQuestion::Kind::save,
+                                 .title = "Where the session is saved",
+                                 .action = "Choose",
+                                 .suffixes = {".livery"},
+                                 .only_new = true,
+                                 .suggested = asked.session,
+                                 .then = [&studio](const auto& chosen) {
+                                     if (page(studio)) page(studio)->session = chosen;
+                                 }});
     }
 }
 
@@ -307,10 +306,7 @@ void draw_new_session(Studio& studio) {
     NewSession& asked = *page(studio);
     const char* title = "New session###new-session";
     if (std::exchange(asked.to_open, false)) ImGui::OpenPopup(title);
-    const ImVec2 window = ImGui::GetMainViewport()->Size;
-    ImGui::SetNextWindowSize({std::min(em(kWidth_em), 0.96f * window.x), 0.0f});
-    ImGui::SetNextWindowPos(ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Always, {0.5f, 0.5f});
-    if (!ImGui::BeginPopupModal(title, nullptr, ImGuiWindowFlags_NoResize)) return;
+    if (!begin_modal(title, em(kWidth_em))) return;
     // A notice that comes meanwhile stays behind it.
     ImGui::BringWindowToDisplayFront(ImGui::GetCurrentWindow());
     draw_given(studio);
@@ -329,17 +325,8 @@ void draw_new_session(Studio& studio) {
 namespace {
 
 const char* name_of(NewSession::Stage stage) {
-    switch (stage) {
-        case NewSession::Stage::reading:
-            return "reading";
-        case NewSession::Stage::unreadable:
-            return "unreadable";
-        case NewSession::Stage::asking:
-            return "asking";
-        case NewSession::Stage::creating:
-            return "creating";
-    }
-    return "reading";
+    constexpr std::array names{"reading", "unreadable", "asking", "creating"};
+    return names[static_cast<std::size_t>(stage)];
 }
 
 void describe_new_session(const Studio& studio, MapState& state) {

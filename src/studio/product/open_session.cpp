@@ -74,23 +74,19 @@ void open_other_session(Studio& studio, const std::filesystem::path& given) {
     std::error_code error;
     if (const auto open = studio.session.file();
         open && std::filesystem::equivalent(*open, file, error)) {
-        notify(studio, {Notice::Level::info, "This session is open already.", file.string(), ""});
+        tell_info(studio, "This session is open already.", file.string());
         return;
     }
     if (const std::string why = why_not_to_leave(studio); !why.empty()) {
-        notify(studio, {Notice::Level::error, what, why, ""});
+        tell_error(studio, what, why);
         return;
     }
     leave_session(
         studio, "Opening " + file.filename().string(), "Stop and open", [&studio, file, what] {
-            studio.background->run(
-                [&studio, file](const Progress&) -> Background::Then {
-                    const auto opened = std::make_shared<OpenedSession>(open_existing(file));
-                    return [&studio, opened] { studio.next_session = opened; };
-                },
-                [&studio, what](const std::exception_ptr& why) {
-                    notify_failure(studio, what, why);
-                });
+            in_background(studio, what, [&studio, file](const Progress&) -> Background::Then {
+                const auto opened = std::make_shared<OpenedSession>(open_existing(file));
+                return [&studio, opened] { studio.next_session = opened; };
+            });
         });
 }
 
@@ -117,13 +113,12 @@ void take_dropped_files(Studio& studio, const std::vector<std::filesystem::path>
             return begin_new_session(studio, file);
         }
     }
-    notify(studio,
-           {Notice::Level::warning,
-            files.size() == 1 ? file.filename().string() + " cannot be opened here."
-                              : "Drop one file at a time.",
-            "A session (.livery) opens. A mesh (.glb, .gltf, .ply, .obj) or a product file (.json) "
-            "begins a new session.",
-            ""});
+    tell_warning(
+        studio,
+        files.size() == 1 ? file.filename().string() + " cannot be opened here."
+                          : "Drop one file at a time.",
+        "A session (.livery) opens. A mesh (.glb, .gltf, .ply, .obj) or a product file (.json) "
+        "begins a new session.");
 }
 
 std::vector<std::filesystem::path> recent_sessions(const UserSettings& settings) {

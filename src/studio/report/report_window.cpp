@@ -93,14 +93,13 @@ void save(Studio& studio, const std::filesystem::path& file) {
 }
 
 void ask_where_to_save(Studio& studio) {
-    FileQuestion question;
-    question.kind = FileQuestion::Kind::save;
-    question.title = "Save report";
-    question.action = "Save";
-    question.suffixes = {".zip"};
-    question.suggested = documents_folder() / report_name(std::time(nullptr));
-    question.then = [&studio](const std::filesystem::path& file) { save(studio, file); };
-    studio.file_dialog->ask(std::move(question));
+    studio.file_dialog->ask(
+        {.kind = FileQuestion::Kind::save,
+         .title = "Save report",
+         .action = "Save",
+         .suffixes = {".zip"},
+         .suggested = documents_folder() / report_name(std::time(nullptr)),
+         .then = [&studio](const std::filesystem::path& file) { save(studio, file); }});
 }
 
 void draw_ticks(Studio& studio) {
@@ -248,17 +247,7 @@ void draw_report_window(Studio& studio) {
     ReportWindowState& window = window_of(studio);
     take_results_of(studio);
     if (!window.open) return;
-    const ImVec2 room = ImGui::GetMainViewport()->WorkSize;
-    ImGui::SetNextWindowPos(
-        ImGui::GetMainViewport()->GetCenter(), ImGuiCond_Appearing, {0.5f, 0.5f});
-    ImGui::SetNextWindowSize(
-        {std::min(em(64.0f), 0.92f * room.x), std::min(em(42.0f), 0.88f * room.y)},
-        ImGuiCond_Appearing);
-    if (ImGui::Begin("Report a problem",
-                     &window.open,
-                     ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings)) {
-        draw_inside(studio);
-    }
+    if (begin_page("Report a problem", window.open, {em(64.0f), em(42.0f)})) draw_inside(studio);
     ImGui::End();
 }
 

@@ -99,22 +99,16 @@ Image8 coloured(const Image8& steps) {
         de00.values[i] =
             static_cast<float>(kSeatMapScale * (std::max<int>(steps.values[i], 1) - 1) / 254.0);
     }
-    const Image8 rgb = difference_map(de00, kSeatMapScale);
-    Image8 rgba(steps.width, steps.height, 4);
+    Image8 rgba = opaque(difference_map(de00, kSeatMapScale));
     for (std::size_t i = 0; i < steps.pixel_count(); ++i) {
-        std::copy_n(&rgb.values[3 * i], 3, &rgba.values[4 * i]);
-        rgba.values[4 * i + 3] = steps.values[i] ? 255 : 0;
+        if (!steps.values[i]) rgba.values[4 * i + 3] = 0;
     }
     return rgba;
 }
 
 void upload(SeatsPanelState& state, const std::shared_ptr<const Image8>& steps) {
     if (state.map_in_texture == steps) return;
-    const glm::ivec2 size(steps->width, steps->height);
-    if (state.map_texture.width() != size.x || state.map_texture.height() != size.y) {
-        state.map_texture = Texture2D({size.x, size.y}, TexelFormat::rgba8, TexelFilter::linear);
-    }
-    state.map_texture.upload(std::span<const std::uint8_t>(coloured(*steps).values));
+    state.map_texture = texture_of(coloured(*steps));
     state.map_in_texture = steps;
 }
 

@@ -245,31 +245,22 @@ bool seats_key(Studio& studio, const KeyChord& chord) {
     const double step_mm = kSeatStep_mm * (chord.shift  ? kCoarseStep
                                            : chord.ctrl ? kFineStep
                                                         : 1.0);
-    switch (chord.key) {
-        case GLFW_KEY_LEFT:
-            move_selected(studio, {-step_mm, 0.0, 0.0});
-            return true;
-        case GLFW_KEY_RIGHT:
-            move_selected(studio, {step_mm, 0.0, 0.0});
-            return true;
-        case GLFW_KEY_UP:
-            move_selected(studio, {0.0, 0.0, -step_mm});
-            return true;
-        case GLFW_KEY_DOWN:
-            move_selected(studio, {0.0, 0.0, step_mm});
-            return true;
-        case GLFW_KEY_PAGE_UP:
-            move_selected(studio, {0.0, step_mm, 0.0});
-            return true;
-        case GLFW_KEY_PAGE_DOWN:
-            move_selected(studio, {0.0, -step_mm, 0.0});
-            return true;
-        case GLFW_KEY_DELETE:
-            remove_selected(studio);
-            return true;
-        default:
-            return false;
+    if (chord.key == GLFW_KEY_DELETE) {
+        remove_selected(studio);
+        return true;
     }
+    static const std::pair<int, glm::dvec3> ways[] = {{GLFW_KEY_LEFT, {-1.0, 0.0, 0.0}},
+                                                      {GLFW_KEY_RIGHT, {1.0, 0.0, 0.0}},
+                                                      {GLFW_KEY_UP, {0.0, 0.0, -1.0}},
+                                                      {GLFW_KEY_DOWN, {0.0, 0.0, 1.0}},
+                                                      {GLFW_KEY_PAGE_UP, {0.0, 1.0, 0.0}},
+                                                      {GLFW_KEY_PAGE_DOWN, {0.0, -1.0, 0.0}}};
+    for (const auto& [key, way] : ways) {
+        if (key != chord.key) continue;
+        move_selected(studio, step_mm * way);
+        return true;
+    }
+    return false;
 }
 
 void draw_seats_panel(Studio& studio) {

@@ -432,16 +432,7 @@ void draw_photograph(Studio& studio, const StageFrame& stage) {
     const Image8& srgb = photograph->srgb;
     if (state.photograph_in_texture != photograph) {
         state.photograph_in_texture = photograph;
-        Image8 rgba(srgb.width, srgb.height, 4, 255);
-        for (std::size_t i = 0; i < srgb.pixel_count(); ++i) {
-            std::copy_n(&srgb.values[3 * i], 3, &rgba.values[4 * i]);
-        }
-        if (state.photograph_texture.width() != srgb.width ||
-            state.photograph_texture.height() != srgb.height) {
-            state.photograph_texture =
-                Texture2D({srgb.width, srgb.height}, TexelFormat::rgba8, TexelFilter::linear);
-        }
-        state.photograph_texture.upload(std::span<const std::uint8_t>(rgba.values));
+        state.photograph_texture = texture_of(srgb);
     }
     const StageFrame picture = photograph_picture(studio, stage);
     draw_texture(state.photograph_texture.name(), picture);

@@ -98,17 +98,16 @@ void tell_product_notes(Studio& studio) {
         notes += (notes.empty() ? "" : "\n") + note;
     }
     if (notes.empty()) return;
-    notify(studio,
-           {Notice::Level::warning, "The product's file was not used as it is:", notes, ""});
+    tell_warning(studio, "The product's file was not used as it is:", notes);
 }
 
 void tell_drawing_problems(Studio& studio) {
     for (const std::string& problem : drawing_problems(studio.session.document())) {
-        notify(studio,
-               {Notice::Level::warning,
-                problem,
-                "",
-                "Put the file back, or choose another; then change something to draw it again."});
+        tell_warning(
+            studio,
+            problem,
+            "",
+            "Put the file back, or choose another; then change something to draw it again.");
     }
 }
 
@@ -208,7 +207,7 @@ class Desktop {
         studio.settings = read_user_settings();
         restore_workspace(studio_);
         read_monitors(studio_);
-        const WindowPlace place = first_place(studio_, options_);
+        const WindowPlace place = first_place(studio_, options_.size_px);
         WindowOptions window_options;
         window_options.size_px = place.size_px;
         window_options.visible = false;

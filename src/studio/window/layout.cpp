@@ -274,15 +274,8 @@ Panel tabs_panel() { return {.name = "tabs", .describe = describe_tabs, .actions
 namespace {
 
 const ImVec4& colour_of(Notice::Level level) {
-    switch (level) {
-        case Notice::Level::error:
-            return colours::error;
-        case Notice::Level::warning:
-            return colours::warning;
-        case Notice::Level::info:
-            break;
-    }
-    return colours::text;
+    using enum Notice::Level;
+    return level == error ? colours::error : level == warning ? colours::warning : colours::text;
 }
 
 /// True when it was dismissed.

@@ -53,17 +53,11 @@ void draw_monitor_choice(Studio& studio, float width) {
 }
 
 const ImVec4& colour_of(ProjectorWords::Mood mood) {
-    switch (mood) {
-        case ProjectorWords::Mood::good:
-            return colours::good;
-        case ProjectorWords::Mood::warning:
-            return colours::warning;
-        case ProjectorWords::Mood::error:
-            return colours::error;
-        case ProjectorWords::Mood::quiet:
-            break;
-    }
-    return colours::dim_text;
+    using enum ProjectorWords::Mood;
+    return mood == good      ? colours::good
+           : mood == warning ? colours::warning
+           : mood == error   ? colours::error
+                             : colours::dim_text;
 }
 
 /// Behind the last item, cut where `right` begins; the whole is in the tooltip then.

@@ -145,7 +145,7 @@ WindowPlace place_of(GLFWwindow* window) {
     return place;
 }
 
-WindowPlace first_place(const Studio& studio, const DesktopOptions& options) {
+WindowPlace first_place(const Studio& studio, std::optional<glm::ivec2> size_px) {
     const auto& monitors = studio.monitors;
     const auto remembered = studio.session.workspace().find(kWindowKey);
     std::optional<WindowPlace> place;
@@ -166,8 +166,8 @@ WindowPlace first_place(const Studio& studio, const DesktopOptions& options) {
     }
     // It may have been left on a screen with larger pixels.
     place->size_px = glm::max(place->size_px, least_size(studio, monitors, place->position));
-    if (options.size_px) {
-        place->size_px = *options.size_px;
+    if (size_px) {
+        place->size_px = *size_px;
         place->maximised = false;
     }
     return place_beside_projector(*place, monitors, studio.projector_monitor).value_or(*place);
@@ -211,11 +211,7 @@ void give_icon(Studio& studio, GLFWwindow* window) {
         };
     };
     studio.background->run(read, [](std::exception_ptr error) {
-        try {
-            std::rethrow_exception(error);
-        } catch (const std::exception& why) {
-            log_line(LogLevel::warning, std::string("no window icon: ") + why.what());
-        }
+        log_line(LogLevel::warning, "no window icon: " + in_words(error));
     });
 }
 

@@ -6,7 +6,6 @@
 
 #include "projection/monitors.h"
 #include "studio/studio.h"
-#include "studio/window/app.h"
 
 struct GLFWwindow;
 
@@ -49,7 +48,7 @@ float screen_scale(GLFWwindow* window, const std::vector<Monitor>& monitors);
 WindowPlace place_of(GLFWwindow* window);
 void put_window(GLFWwindow* window, const WindowPlace& place);
 /// Where the window was left, or in the middle of the main monitor.
-WindowPlace first_place(const Studio& studio, const DesktopOptions& options);
+WindowPlace first_place(const Studio& studio, std::optional<glm::ivec2> size_px);
 /// Off the projector, when the projector was chosen or monitors came and went.
 void move_off_projector(Studio& studio, GLFWwindow* window);
 

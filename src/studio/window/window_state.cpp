@@ -1,5 +1,5 @@
 #include <algorithm>
-#include <charconv>
+#include <array>
 #include <utility>
 
 #include <fmt/format.h>
@@ -21,33 +21,17 @@ constexpr const char* kNotSaved = "What you do is not being saved at the moment.
 
 void tell_saved_again(Studio& studio) {
     std::erase_if(studio.notices, [](const Notice& n) { return n.what == kNotSaved; });
-    notify(studio, {Notice::Level::info, "Everything is saved again.", "", ""});
+    tell_info(studio, "Everything is saved again.");
 }
 
 const char* name_of(StageView view) {
-    switch (view) {
-        case StageView::preview:
-            return "preview";
-        case StageView::eye:
-            return "eye";
-        case StageView::projector:
-            return "projector";
-        case StageView::photograph:
-            return "photograph";
-    }
-    return "preview";
+    constexpr std::array names{"preview", "eye", "projector", "photograph"};
+    return names[static_cast<std::size_t>(view)];
 }
 
 const char* name_of(ProjectorScreen::State state) {
-    switch (state) {
-        case ProjectorScreen::State::off:
-            return "off";
-        case ProjectorScreen::State::waiting_for_monitor:
-            return "waiting";
-        case ProjectorScreen::State::showing:
-            return "showing";
-    }
-    return "off";
+    constexpr std::array names{"off", "waiting", "showing"};
+    return names[static_cast<std::size_t>(state)];
 }
 
 const std::string* find(const Workspace& workspace, const std::string& name) {
@@ -55,14 +39,9 @@ const std::string* find(const Workspace& workspace, const std::string& name) {
     return found == workspace.end() ? nullptr : &found->second;
 }
 
-/// A remembered number; what cannot be read is as if it had not been remembered.
 template <typename Number>
 void restore(const Workspace& workspace, const char* name, Number& value, Number low, Number high) {
-    const std::string* text = find(workspace, name);
-    if (!text) return;
-    Number read{};
-    const auto [end, error] = std::from_chars(text->data(), text->data() + text->size(), read);
-    if (error == std::errc() && read >= low && read <= high) value = read;
+    if (const std::string* text = find(workspace, name)) livery::restore(*text, value, low, high);
 }
 
 void remember(Session& session, const char* name, const std::string& value) {
@@ -173,12 +152,11 @@ void save_again_now_and_then(Studio& studio) {
     }
     if (studio.save_again_at_s <= 0.0) {
         studio.save_again_at_s = studio.now_s + kBetweenSavings_s;
-        notify(studio,
-               {Notice::Level::error,
-                kNotSaved,
-                *studio.session.save_problem(),
-                "Make room on the disk: saving then goes on by itself. File > Save session as… "
-                "saves it elsewhere."});
+        tell_error(studio,
+                   kNotSaved,
+                   *studio.session.save_problem(),
+                   "Make room on the disk: saving then goes on by itself. File > Save session as… "
+                   "saves it elsewhere.");
     } else if (studio.now_s >= studio.save_again_at_s) {
         studio.save_again_at_s = studio.now_s + kBetweenSavings_s;
         studio.session.save_again();
@@ -187,11 +165,10 @@ void save_again_now_and_then(Studio& studio) {
 
 void tell_unsaved(Studio& studio) {
     if (studio.session.file()) return;
-    notify(studio,
-           {Notice::Level::error,
-            "Nothing that you do is being saved.",
-            studio.session.save_problem().value_or(""),
-            "File > Save session as… saves it elsewhere, with all that was done."});
+    tell_error(studio,
+               "Nothing that you do is being saved.",
+               studio.session.save_problem().value_or(""),
+               "File > Save session as… saves it elsewhere, with all that was done.");
 }
 
 }  // namespace livery
