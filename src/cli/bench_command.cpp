@@ -193,7 +193,6 @@ Command bench_command() {
                 measure_speed(common.gl_device(), arguments->quick, progress);
             if (!arguments->quick) write_pass_costs(kept, costs_of(result));
             outcome.figures = json_of(result);
-            outcome.text = text_of(result);
             markdown = markdown_of(result);
             plot = sweep_svg(result.sweep);
         }
@@ -202,7 +201,6 @@ Command bench_command() {
             for (Json& effect : json_of(effects_of(result))) {
                 outcome.figures["effects"].push_back(std::move(effect));
             }
-            outcome.text += text_of(result);
             markdown += markdown_of(result);
         };
         std::string accuracy_plot, accuracy_csv, chain_csv;
@@ -246,6 +244,7 @@ Command bench_command() {
             add(measure_geometry_errors(common.gl_device(), arguments->quick, seed, progress));
         }
         outcome.figures["suite"] = arguments->suite;
+        outcome.text += markdown;
         if (!out.empty()) {
             write_json_file(out / "bench.json", outcome.figures);
             if (wanted("speed")) write_text_file(out / "speed.svg", plot);

@@ -250,20 +250,6 @@ std::vector<LedgerEffect> effects_of(const BudgetCheck& check) {
     return {predicted, chosen, best};
 }
 
-std::string text_of(const BudgetCheck& check) {
-    std::string text = summary(check) + "\n";
-    for (const ChosenLevels& choice : check.choices) {
-        text += fmt::format("{:<36} {:8.1f} ms: chosen {:.2f}, best of {} {:.2f}, floor {:.2f}\n",
-                            choice.scene,
-                            choice.budget_ms,
-                            choice.chosen,
-                            choice.combinations,
-                            choice.best,
-                            choice.floor);
-    }
-    return text;
-}
-
 std::string markdown_of(const BudgetCheck& check) {
     std::string text = fmt::format("OpenGL: {}. {}\n\n", check.renderer, summary(check));
     text += "| frame | predicted, ms | measured, ms | ratio |\n| --- | --- | --- | --- |\n";

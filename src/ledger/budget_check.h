@@ -43,7 +43,6 @@ BudgetCheck check_budget(GlDevice device,
                          const Progress& progress = {});
 
 std::vector<LedgerEffect> effects_of(const BudgetCheck& check);
-std::string text_of(const BudgetCheck& check);
 std::string markdown_of(const BudgetCheck& check);
 
 }  // namespace livery

@@ -78,7 +78,6 @@ std::vector<DrawnError> drawn_errors(ReflectanceModel model,
 
 /// An effect for each paint in each light.
 std::vector<LedgerEffect> effects_of(const std::vector<DrawnError>& rows);
-std::string text_of(const std::vector<DrawnError>& rows);
 /// Tables by paint and by slope parameter.
 std::string markdown_of(const std::vector<DrawnError>& rows);
 

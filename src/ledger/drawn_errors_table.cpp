@@ -63,27 +63,6 @@ std::vector<LedgerEffect> effects_of(const std::vector<DrawnError>& rows) {
     return effects;
 }
 
-std::string text_of(const std::vector<DrawnError>& rows) {
-    std::string text = fmt::format("{:<24}{:<22}{:>8}{:>10}{:>10}{:>10}\n",
-                                   "paint",
-                                   "light",
-                                   "alpha",
-                                   "lanes",
-                                   "OpenGL",
-                                   "of");
-    for (const DrawnError& row : rows) {
-        text += fmt::format("{:<24}{:<22}{:>8.4g}{:>10.1e}{:>10.1e}{:>10.1e}{}\n",
-                            row.paint,
-                            to_string(row.light),
-                            row.alpha,
-                            row.in_lanes,
-                            row.in_gl,
-                            row.allowed,
-                            row.invalid ? fmt::format("  {} invalid", row.invalid) : "");
-    }
-    return text;
-}
-
 std::string markdown_of(const std::vector<DrawnError>& rows) {
     std::size_t values = 0, invalid = 0, beyond = 0;
     std::set<double> alphas;

@@ -247,27 +247,6 @@ std::string lines_of(const GeometryErrorLedger& result, const Line& line) {
 
 }  // namespace
 
-std::string text_of(const GeometryErrorLedger& result) {
-    return fmt::format("{} on the bench \"{}\", in the eye's picture; simulated\n",
-                       result.look,
-                       result.bench) +
-           fmt::format("{:<24}{:<14}{:>18}{:>22}{:>18}\n",
-                       "what is off",
-                       "by",
-                       "picture off, px",
-                       "CIEDE2000, interior",
-                       "edge band") +
-           lines_of(result, [](const GeometryErrorRow& row) {
-               return fmt::format(
-                   "{:<24}{:<14}{:>18}{:>22}{:>18}\n",
-                   row.effect,
-                   row.level,
-                   fmt::format("{:.2f} / {:.2f}", row.off_median_px, row.off_p95_px),
-                   fmt::format("{:.2f} / {:.2f}", row.seen.median, row.seen.p95),
-                   fmt::format("{:.2f} / {:.2f}", row.edge_band.median, row.edge_band.p95));
-           });
-}
-
 std::string markdown_of(const GeometryErrorLedger& result) {
     return fmt::format(
                "Look `{}` on the simulated bench `{}`, median / 95th percentile. OpenGL: {}.\n\n"

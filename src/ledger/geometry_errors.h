@@ -36,7 +36,6 @@ GeometryErrorLedger measure_geometry_errors(GlDevice device,
                                             const Progress& progress = {});
 
 std::vector<LedgerEffect> effects_of(const GeometryErrorLedger& result);
-std::string text_of(const GeometryErrorLedger& result);
 std::string markdown_of(const GeometryErrorLedger& result);
 
 }  // namespace livery

@@ -29,24 +29,19 @@ const SweepPoint* point_of(const std::vector<SweepPoint>& sweep,
 }
 
 /// What the fits say, a line a stage.
-std::string laws(const std::vector<SweepPoint>& sweep, bool markdown) {
+std::string laws(const std::vector<SweepPoint>& sweep) {
     std::string text =
-        markdown
-            ? "| stage | threads | slope of the fit | R² | dearest pixel over cheapest |\n"
-              "| --- | --- | --- | --- | --- |\n"
-            : "ms against the mock-up's pixels, both logarithmic: threads, slope of the fit, R2, "
-              "dearest pixel over cheapest\n";
+        "| stage | threads | slope of the fit | R² | dearest pixel over cheapest |\n"
+        "| --- | --- | --- | --- | --- |\n";
     for (const SwapStage stage : kSwapStages) {
         for (const int threads : threads_of(sweep)) {
             const PowerLaw law = fit_power_law(sweep, stage, threads);
-            text += fmt::format("{}{:<30} | {} | {:.2f} | {:.3f} | {:.2f}{}\n",
-                                markdown ? "| " : "  ",
+            text += fmt::format("| {} | {} | {:.2f} | {:.3f} | {:.2f} |\n",
                                 to_string(stage),
                                 threads,
                                 law.slope,
                                 law.r2,
-                                law.spread,
-                                markdown ? " |" : "");
+                                law.spread);
         }
     }
     return text;
@@ -111,45 +106,6 @@ std::string effects_table(const std::vector<LedgerEffect>& effects) {
 
 }  // namespace
 
-std::string text_of(const SpeedLedger& result) {
-    std::string text =
-        fmt::format("{}, {} threads; mock-up on {:.1f}% of 1280x800; median (fastest) ms\n",
-                    result.renderer,
-                    result.threads,
-                    100.0 * result.covered_fraction);
-    for (const LedgerEffect& effect : result.effects) {
-        text += effect.name + "\n";
-        for (const LedgerLevel& level : effect.levels) {
-            text += fmt::format("  {:<22}{:10.2f} ({:.2f}), {} runs\n",
-                                level.name,
-                                level.ms,
-                                level.fastest_ms,
-                                level.repeats);
-            if (level.p95_ms && level.longest_ms) {
-                text += fmt::format("  {:<22}{:10.2f} 95th percentile, {:.2f} longest\n",
-                                    "",
-                                    *level.p95_ms,
-                                    *level.longest_ms);
-            }
-            if (level.error) {
-                text += fmt::format("  {:<22}{:10.4f} {}\n", "", *level.error, level.unit);
-            }
-        }
-    }
-    text += "paint swap to projector input\n";
-    for (const SweepPoint& point : result.sweep) {
-        const SweepTime& whole = point.of(SwapStage::whole);
-        text += fmt::format("  {:<10}{:5.1f}% {} threads {:10.2f} ({:.2f}), {:.1f} ns a pixel\n",
-                            size_of(point),
-                            100.0 * point.coverage,
-                            point.threads,
-                            whole.ms,
-                            whole.fastest_ms,
-                            1e6 * whole.ms / point.pixels);
-    }
-    return text + laws(result.sweep, false);
-}
-
 std::string markdown_of(const SpeedLedger& result) {
     return fmt::format(
         "Measured by `livery bench` on {} threads; OpenGL: {}. Times are medians in "
@@ -159,7 +115,7 @@ std::string markdown_of(const SpeedLedger& result) {
         result.renderer,
         result.load_before,
         sweep_table(result.sweep),
-        laws(result.sweep, true),
+        laws(result.sweep),
         effects_table(result.effects));
 }
 

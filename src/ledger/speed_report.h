@@ -9,7 +9,6 @@
 
 namespace livery {
 
-std::string text_of(const SpeedLedger& result);
 
 /// Tables of the sweep, the stages and the desktop.
 std::string markdown_of(const SpeedLedger& result);

@@ -137,28 +137,6 @@ std::vector<LedgerEffect> effects_of(const StabilityLedger& result) {
     return effects;
 }
 
-std::string text_of(const StabilityLedger& result) {
-    std::string text = text_of(result.drawn);
-    text += fmt::format("OpenGL: {}\n{:<24}{:>10}{:>10}{:>12}{:>10}{:>9}\n",
-                        result.renderer,
-                        "model",
-                        "float",
-                        "OpenGL",
-                        "exchanged",
-                        "albedo",
-                        "invalid");
-    for (const ModelStability& model : result.models) {
-        text += fmt::format("{:<24}{:>10.1e}{:>10.1e}{:>12.1e}{:>10.5f}{:>9}\n",
-                            model_info(model.model).name,
-                            worst_in_float(model),
-                            worst_on_gpu(model),
-                            model.reciprocity,
-                            model.albedo.albedo,
-                            model.invalid.invalid);
-    }
-    return text;
-}
-
 std::string markdown_of(const StabilityLedger& result) {
     std::string text = fmt::format("OpenGL: {}.\n\n", result.renderer) + markdown_of(result.drawn);
     text += fmt::format(

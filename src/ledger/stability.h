@@ -38,7 +38,6 @@ StabilityLedger measure_stability(GlDevice device,
 
 /// An effect for each paint in each light and for each model, its figures as errors.
 std::vector<LedgerEffect> effects_of(const StabilityLedger& result);
-std::string text_of(const StabilityLedger& result);
 /// Tables of what is drawn, of the models, and of their errors at each slope parameter.
 std::string markdown_of(const StabilityLedger& result);
 

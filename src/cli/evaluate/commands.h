@@ -71,13 +71,14 @@ VoteSource read_vote_source(const VoteSourceArguments& arguments, std::uint64_t 
 
 /// A list, of each scale what its looks and its test say.
 Json figures_of(const ScaleStatistics& statistics);
-std::string text_of(const ScaleStatistics& statistics, const std::vector<std::string>& names);
 
 /// Of a series: rounds[], designs[], votes[][], majorities[], and the tests.
 Json figures_of(const DuelRecord& duel);
 std::string text_of(const DuelRecord& duel);
 
 Json figures_of(const VoteStatistics& statistics, const std::vector<std::string>& names);
-std::string text_of(const VoteStatistics& statistics, const std::vector<std::string>& names);
+
+/// The report's tables, the scales and the duel among them, and the verdict.
+std::string text_of(const RoundReportSource& source);
 
 }  // namespace livery

@@ -90,108 +90,11 @@ Json verdict_of(const VoteStatistics& statistics) {
     return json;
 }
 
-std::string design_table(const VoteStatistics& statistics, const std::vector<std::string>& names) {
-    std::size_t width = 6;
-    for (const std::string& name : names) width = std::max(width, name.size());
-    const bool least = statistics.counts.has_least();
-    std::string text = fmt::format("{:<{}} {:>5} {:>6}{} {:>8} {:>5} {:>6} {:>8}  share of best\n",
-                                   "design",
-                                   width,
-                                   "best",
-                                   "second",
-                                   least ? "  least" : "",
-                                   "rank sum",
-                                   "Borda",
-                                   "worth",
-                                   "P(first)");
-    for (std::size_t i = 0; i < names.size(); ++i) {
-        text +=
-            fmt::format("{:<{}} {:>5} {:>6}{} {:>8.1f} {:>5} {:>6.3f} {:>8.3f}  {:.2f} to {:.2f}\n",
-                        names[i],
-                        width,
-                        statistics.counts.best[i],
-                        statistics.counts.second[i],
-                        least ? fmt::format(" {:>6}", statistics.counts.least[i]) : "",
-                        statistics.rank_sums[i],
-                        statistics.borda[i],
-                        statistics.worths[i],
-                        statistics.predicted.first[i],
-                        statistics.share_best[i].low,
-                        statistics.share_best[i].high);
-    }
-    return text;
-}
-
-std::string test_lines(const VoteStatistics& statistics) {
-    std::string text = fmt::format(
-        "best against equal preference: chi-square {:.2f}, p = {:.3f} ({}; {:.3f} asymptotic)\n",
-        statistics.best_votes.chi_square,
-        statistics.best_votes.p,
-        method_text(statistics.best_votes.method, statistics.best_votes.cases),
-        statistics.best_votes.asymptotic_p);
-    text += fmt::format("Friedman, all votes: Q {:.2f}, p = {:.4f} ({})\n",
-                        statistics.friedman_q,
-                        statistics.friedman_p,
-                        method_text(statistics.friedman_method, statistics.friedman_cases));
-    if (statistics.kendall_w) {
-        text += fmt::format("agreement: Kendall's W {:.3f}", *statistics.kendall_w);
-        if (statistics.krippendorff_alpha) {
-            text += fmt::format(", Krippendorff's alpha {:.3f}", *statistics.krippendorff_alpha);
-        }
-        text += "\n";
-    }
-    if (statistics.range_threshold) {
-        text += fmt::format(
-            "rank sums tell two designs apart from a difference of {:.1f} on (5% over all pairs)\n",
-            *statistics.range_threshold);
-    }
-    return text;
-}
-
-std::string pair_lines(const VoteStatistics& statistics, const std::vector<std::string>& names) {
-    std::string text;
-    constexpr std::size_t most = 28;
-    for (std::size_t k = 0; k < std::min(most, statistics.pairs.size()); ++k) {
-        const PairComparison& pair = statistics.pairs[k];
-        text += fmt::format("{} to {}: odds {} [{}, {}], p = {:.3f}\n",
-                            names[static_cast<std::size_t>(pair.a)],
-                            names[static_cast<std::size_t>(pair.b)],
-                            odds_text(pair.odds),
-                            odds_text(pair.low),
-                            odds_text(pair.high),
-                            pair.p);
-    }
-    if (statistics.pairs.size() > most) {
-        text += fmt::format("{} more pairs: --json\n", statistics.pairs.size() - most);
-    }
-    if (statistics.ghost) {
-        text +=
-            "worths: with half a win and half a loss of each design against a ghost, since a "
-            "design "
-            "has no vote or one has all for best; were all liked alike, 95% intervals would hold "
-            "in "
-            "about 60% of such rounds\n";
-    }
-    if (statistics.pairs_expected) {
-        text +=
-            "worths: the counts do not tell which best went with which second best; the evenest "
-            "way is taken\n";
-    }
-    return text;
-}
-
-std::string power_lines(const VoteStatistics& statistics, const std::vector<std::string>& names) {
-    if (statistics.power.empty()) return "";
-    std::string text = fmt::format("a fresh round at these worths would tell {} from {}:",
-                                   names[static_cast<std::size_t>(statistics.verdict.leader)],
-                                   names[static_cast<std::size_t>(statistics.verdict.rival)]);
-    for (std::size_t k = 0; k < statistics.power.size(); ++k) {
-        text += fmt::format("{} with {} evaluators in {:.0f}%",
-                            k == 0 ? "" : ",",
-                            statistics.power[k].evaluators,
-                            100.0 * statistics.power[k].power);
-    }
-    return text + " of cases\n";
+/// The order of the report; a terminal's tables have the designs' names alone.
+ChartRows text_rows(const VoteStatistics& statistics, const std::vector<std::string>& names) {
+    ChartRows rows = chart_rows(statistics, names);
+    rows.labels = names;
+    return rows;
 }
 
 }  // namespace
@@ -220,29 +123,6 @@ Json figures_of(const ScaleStatistics& statistics) {
     return scales;
 }
 
-std::string text_of(const ScaleStatistics& statistics, const std::vector<std::string>& names) {
-    if (statistics.scales.empty()) return "";
-    std::string text = fmt::format(
-        "\nscales from 1 (the first word) to 7, {} evaluators answered; 95% by evaluators drawn "
-        "again\n",
-        statistics.evaluators);
-    for (const ScaleFigures& figures : statistics.scales) {
-        text += in_words(figures.scale) + "\n";
-        for (std::size_t k = 0; k < names.size(); ++k) {
-            const LookOnScale& look = figures.looks[k];
-            text += look.answers == 0 ? fmt::format("  {}: no answers\n", names[k])
-                                      : fmt::format("  {}: {:.2f} [{:.2f}, {:.2f}], {} answers\n",
-                                                    names[k],
-                                                    look.mean,
-                                                    look.interval.low,
-                                                    look.interval.high,
-                                                    look.answers);
-        }
-    }
-    for (const ScaleFigures& figures : statistics.scales) text += figures.words + "\n";
-    return text;
-}
-
 Json figures_of(const DuelRecord& duel) {
     const DuelStatistics& statistics = duel.statistics;
     const auto interval = [](const Interval& share) { return Json{share.low, share.high}; };
@@ -267,22 +147,14 @@ Json figures_of(const DuelRecord& duel) {
 }
 
 std::string text_of(const DuelRecord& duel) {
-    std::string text = fmt::format("\nduel of {} and {}, {} of {} blind repeats\n",
-                                   duel.series.designs[0],
-                                   duel.series.designs[1],
-                                   duel.votes.size(),
-                                   duel.series.repeats);
-    for (std::size_t k = 0; k < duel.votes.size(); ++k) {
-        text += fmt::format("repeat {}, round {}: {} to {}\n",
-                            k + 1,
-                            duel.series.rounds[k],
-                            duel.votes[k][0],
-                            duel.votes[k][1]);
-    }
-    text += fmt::format("evaluators by their majorities: {} to {}\n",
-                        duel.statistics.majorities[0],
-                        duel.statistics.majorities[1]);
-    return text + "duel: " + duel.words + "\n";
+    return fmt::format("duel of {} and {}, {} of {} blind repeats\n\n{}\n{}\nduel: {}\n",
+                       duel.series.designs[0],
+                       duel.series.designs[1],
+                       duel.votes.size(),
+                       duel.series.repeats,
+                       text_of(duel_repeats_table(duel)),
+                       text_of(duel_tests_table(duel)),
+                       duel.words);
 }
 
 Json figures_of(const VoteStatistics& statistics, const std::vector<std::string>& names) {
@@ -327,17 +199,27 @@ Json figures_of(const VoteStatistics& statistics, const std::vector<std::string>
     return figures;
 }
 
-std::string text_of(const VoteStatistics& statistics, const std::vector<std::string>& names) {
-    std::string text = design_table(statistics, names) + test_lines(statistics) +
-                       pair_lines(statistics, names) + power_lines(statistics, names);
-    if (statistics.evaluators > 1) {
-        text += fmt::format("{} and {} would be the top two again in {:.0f}% of such rounds ({})\n",
-                            names[static_cast<std::size_t>(statistics.top_a)],
-                            names[static_cast<std::size_t>(statistics.top_b)],
-                            100.0 * statistics.wins.top_two,
-                            method_text(statistics.wins.method, statistics.wins.cases));
+std::string text_of(const RoundReportSource& source) {
+    const VoteStatistics& statistics = source.statistics;
+    const ChartRows rows = text_rows(statistics, source.names);
+    std::vector<ReportTable> tables = {votes_table(statistics, rows),
+                                       worths_table(statistics, rows),
+                                       tests_table(statistics, rows),
+                                       pairs_table(statistics, rows)};
+    if (!statistics.power.empty()) tables.push_back(power_table(statistics, statistics.power));
+    if (!source.scales.scales.empty()) {
+        tables.push_back(scale_means_table(source.scales, rows));
+        tables.push_back(scale_tests_table(source.scales));
     }
-    return text + "verdict: " + statistics.words + "\n";
+    std::string text;
+    for (const ReportTable& table : tables) text += text_of(table) + "\n";
+    for (const ScaleFigures& scale : source.scales.scales) text += scale.words + "\n";
+    text += "verdict: " + statistics.words + "\n";
+    if (!source.record || !source.record->duel) return text;
+    return fmt::format("round {} by itself:\n\n{}\n{}",
+                       source.record->round.id,
+                       text,
+                       text_of(*source.record->duel));
 }
 
 }  // namespace livery

@@ -2,8 +2,6 @@
 
 #include <memory>
 
-#include <fmt/format.h>
-
 #include "cli/evaluate/commands.h"
 
 namespace livery {
@@ -18,20 +16,13 @@ Command evaluate_tally_command() {
     command.run = [arguments](const CommonOptions& common, const Progress&) {
         const RoundReportSource source =
             read_vote_source(*arguments, static_cast<std::uint64_t>(common.seed)).round;
-        Outcome outcome{figures_of(source.statistics, source.names),
-                        text_of(source.statistics, source.names)};
+        Outcome outcome{figures_of(source.statistics, source.names), text_of(source)};
         if (source.record) {
             outcome.figures["round"] = source.record->round.id;
             outcome.figures["calibration_id"] = source.record->round.calibration_id;
-            if (!source.scales.scales.empty()) {
+            if (!source.scales.scales.empty())
                 outcome.figures["scales"] = figures_of(source.scales);
-                outcome.text += text_of(source.scales, source.names);
-            }
-            if (source.record->duel) {
-                outcome.figures["series"] = figures_of(*source.record->duel);
-                outcome.text = fmt::format("round {} by itself:\n", source.record->round.id) +
-                               outcome.text + text_of(*source.record->duel);
-            }
+            if (source.record->duel) outcome.figures["series"] = figures_of(*source.record->duel);
         }
         if (arguments->sample) {
             outcome.figures["sample"] = true;

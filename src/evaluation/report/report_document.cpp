@@ -244,4 +244,38 @@ PdfFile pdf_of(const ReportDocument& document) {
     return file;
 }
 
+namespace {
+
+std::size_t code_points(const std::string& text) {
+    return static_cast<std::size_t>(
+        std::count_if(text.begin(), text.end(), [](char byte) { return (byte & 0xc0) != 0x80; }));
+}
+
+}  // namespace
+
+std::string text_of(const ReportTable& table) {
+    std::vector<std::size_t> widths;
+    for (const ReportColumn& column : table.columns) widths.push_back(code_points(column.title));
+    for (const auto& row : table.rows) {
+        for (std::size_t c = 0; c < row.size(); ++c) {
+            widths[c] = std::max(widths[c], code_points(row[c]));
+        }
+    }
+    const auto line = [&](const auto& cell_of) {
+        std::string text;
+        for (std::size_t c = 0; c < table.columns.size(); ++c) {
+            const std::string& cell = cell_of(c);
+            const std::string gap(widths[c] - code_points(cell), ' ');
+            text += table.columns[c].number ? "  " + gap + cell : (c ? "  " : "") + cell + gap;
+        }
+        return text.substr(0, text.find_last_not_of(' ') + 1) + "\n";
+    };
+    std::string text = table.caption + "\n";
+    text += line([&](std::size_t c) -> const std::string& { return table.columns[c].title; });
+    for (const auto& row : table.rows) {
+        text += line([&](std::size_t c) -> const std::string& { return row[c]; });
+    }
+    return table.note.empty() ? text : text + table.note + "\n";
+}
+
 }  // namespace livery

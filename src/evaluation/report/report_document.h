@@ -66,6 +66,9 @@ struct ReportDocument {
 /// UTF-8; everything that comes from elsewhere is escaped. Prints on A4.
 std::string html_of(const ReportDocument& document);
 
+/// A table for a terminal: caption, aligned columns, note.
+std::string text_of(const ReportTable& table);
+
 /// A drawing as an `<svg>` element; title and description are for screen readers, `id` is
 /// the document's own.
 std::string svg_of(const VectorDrawing& drawing,

@@ -53,7 +53,6 @@ std::vector<AccuracyLevel> levels_of(const AccuracyLedger& ledger);
 std::vector<bool> front_of(const std::vector<AccuracyLevel>& levels);
 
 std::vector<LedgerEffect> effects_of(const AccuracyLedger& ledger);
-std::string text_of(const AccuracyLedger& ledger);
 std::string markdown_of(const AccuracyLedger& ledger);
 /// Every row: scene, effect, level, times and errors, with a heading.
 std::string csv_of(const AccuracyLedger& ledger);

@@ -87,24 +87,6 @@ std::vector<LedgerEffect> effects_of(const AccuracyLedger& ledger) {
     return effects;
 }
 
-std::string text_of(const AccuracyLedger& ledger) {
-    std::string text = heading(ledger);
-    for (const AccuracyLevel& level : levels_of(ledger)) {
-        text += fmt::format(
-            "{:<22} {:<14} {:8.0f} ms of its own, {:8.0f} ms new light, {:6.1f} ms swap; CIEDE2000 "
-            "{}, worst 95% {:.2f}, 99% {:.2f}\n",
-            level.effect,
-            level.level,
-            level.own_ms,
-            level.solve_ms,
-            level.swap_ms,
-            error_of(level),
-            level.p95,
-            level.p99);
-    }
-    return text;
-}
-
 std::string markdown_of(const AccuracyLedger& ledger) {
     const auto levels = levels_of(ledger);
     return heading(ledger) + "\n" + table_of(levels, true) + "\n" + table_of(levels, false) + "\n" +
@@ -164,25 +146,6 @@ std::vector<LedgerEffect> effects_of(const ChainLedger& ledger) {
         level.unit = "CIEDE2000";
     }
     return effects;
-}
-
-std::string text_of(const ChainLedger& ledger) {
-    std::string text = "the rest of the way\n";
-    for (const ChainRow& row : ledger.rows) {
-        text += fmt::format("{:<44} {:<30} ", row.what, row.level);
-        if (!row.missing.empty()) {
-            text += row.missing + "\n";
-            continue;
-        }
-        text += fmt::format("{:>10}; CIEDE2000 {:.3f}, 95% {:.3f}, 99% {:.3f} of {}, against {}\n",
-                            row.ms ? ms_text(row) + " ms" : "",
-                            row.median,
-                            row.p95,
-                            row.p99,
-                            row.compared,
-                            row.against);
-    }
-    return text;
 }
 
 std::string markdown_of(const ChainLedger& ledger) {

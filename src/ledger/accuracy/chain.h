@@ -62,7 +62,6 @@ void write_chain_rows(const std::filesystem::path& folder,
 
 /// In the order of the rows, one for each `what`; what takes no time of its own has no repeats.
 std::vector<LedgerEffect> effects_of(const ChainLedger& ledger);
-std::string text_of(const ChainLedger& ledger);
 std::string markdown_of(const ChainLedger& ledger);
 std::string csv_of(const ChainLedger& ledger);
 
