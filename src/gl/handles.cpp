@@ -1,6 +1,7 @@
 #include "gl/handles.h"
 
 #include <algorithm>
+#include <array>
 #include <stdexcept>
 #include <string>
 
@@ -25,65 +26,38 @@ namespace {
 enum class TexelKind { normalised, floating, integer, depth };
 
 struct FormatFacts {
+    TexelFormat format;
     GLenum internal;
     GLenum external;
     int channels;
+    std::size_t channel_bytes;  ///< on the device
     TexelKind kind;
     GLenum integer_type = 0;  ///< the one external type of integer formats
 };
 
-FormatFacts facts(TexelFormat format) {
-    switch (format) {
-        case TexelFormat::r8:
-            return {GL_R8, GL_RED, 1, TexelKind::normalised};
-        case TexelFormat::rg8:
-            return {GL_RG8, GL_RG, 2, TexelKind::normalised};
-        case TexelFormat::rgba8:
-            return {GL_RGBA8, GL_RGBA, 4, TexelKind::normalised};
-        case TexelFormat::r16f:
-            return {GL_R16F, GL_RED, 1, TexelKind::floating};
-        case TexelFormat::rg16f:
-            return {GL_RG16F, GL_RG, 2, TexelKind::floating};
-        case TexelFormat::rgba16f:
-            return {GL_RGBA16F, GL_RGBA, 4, TexelKind::floating};
-        case TexelFormat::r32f:
-            return {GL_R32F, GL_RED, 1, TexelKind::floating};
-        case TexelFormat::rg32f:
-            return {GL_RG32F, GL_RG, 2, TexelKind::floating};
-        case TexelFormat::rgba32f:
-            return {GL_RGBA32F, GL_RGBA, 4, TexelKind::floating};
-        case TexelFormat::r8ui:
-            return {GL_R8UI, GL_RED_INTEGER, 1, TexelKind::integer, GL_UNSIGNED_BYTE};
-        case TexelFormat::r16ui:
-            return {GL_R16UI, GL_RED_INTEGER, 1, TexelKind::integer, GL_UNSIGNED_SHORT};
-        case TexelFormat::r32ui:
-            return {GL_R32UI, GL_RED_INTEGER, 1, TexelKind::integer, GL_UNSIGNED_INT};
-        case TexelFormat::rg32ui:
-            return {GL_RG32UI, GL_RG_INTEGER, 2, TexelKind::integer, GL_UNSIGNED_INT};
-        case TexelFormat::rgba32ui:
-            return {GL_RGBA32UI, GL_RGBA_INTEGER, 4, TexelKind::integer, GL_UNSIGNED_INT};
-        case TexelFormat::depth32f:
-            return {GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, 1, TexelKind::depth};
+const FormatFacts& facts(TexelFormat format) {
+    using enum TexelFormat;
+    using enum TexelKind;
+    static constexpr std::array kFormats{
+        FormatFacts{r8, GL_R8, GL_RED, 1, 1, normalised},
+        FormatFacts{rg8, GL_RG8, GL_RG, 2, 1, normalised},
+        FormatFacts{rgba8, GL_RGBA8, GL_RGBA, 4, 1, normalised},
+        FormatFacts{r16f, GL_R16F, GL_RED, 1, 2, floating},
+        FormatFacts{rg16f, GL_RG16F, GL_RG, 2, 2, floating},
+        FormatFacts{rgba16f, GL_RGBA16F, GL_RGBA, 4, 2, floating},
+        FormatFacts{r32f, GL_R32F, GL_RED, 1, 4, floating},
+        FormatFacts{rg32f, GL_RG32F, GL_RG, 2, 4, floating},
+        FormatFacts{rgba32f, GL_RGBA32F, GL_RGBA, 4, 4, floating},
+        FormatFacts{r8ui, GL_R8UI, GL_RED_INTEGER, 1, 1, integer, GL_UNSIGNED_BYTE},
+        FormatFacts{r16ui, GL_R16UI, GL_RED_INTEGER, 1, 2, integer, GL_UNSIGNED_SHORT},
+        FormatFacts{r32ui, GL_R32UI, GL_RED_INTEGER, 1, 4, integer, GL_UNSIGNED_INT},
+        FormatFacts{rg32ui, GL_RG32UI, GL_RG_INTEGER, 2, 4, integer, GL_UNSIGNED_INT},
+        FormatFacts{rgba32ui, GL_RGBA32UI, GL_RGBA_INTEGER, 4, 4, integer, GL_UNSIGNED_INT},
+        FormatFacts{depth32f, GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, 1, 4, depth}};
+    for (const FormatFacts& known : kFormats) {
+        if (known.format == format) return known;
     }
     throw std::invalid_argument("unknown texel format");
-}
-
-/// Bytes of one channel on the device.
-std::size_t channel_bytes(TexelFormat format) {
-    switch (format) {
-        case TexelFormat::r8:
-        case TexelFormat::rg8:
-        case TexelFormat::rgba8:
-        case TexelFormat::r8ui:
-            return 1;
-        case TexelFormat::r16f:
-        case TexelFormat::rg16f:
-        case TexelFormat::rgba16f:
-        case TexelFormat::r16ui:
-            return 2;
-        default:
-            return 4;
-    }
 }
 
 std::size_t bytes_of(const TextureShape& shape, TexelFormat format) {
@@ -93,7 +67,7 @@ std::size_t bytes_of(const TextureShape& shape, TexelFormat format) {
                   static_cast<std::size_t>(std::max(shape.height >> level, 1));
     }
     return texels * static_cast<std::size_t>(std::max(shape.layers, 1)) *
-           static_cast<std::size_t>(facts(format).channels) * channel_bytes(format);
+           static_cast<std::size_t>(facts(format).channels) * facts(format).channel_bytes;
 }
 
 bool accepts(const FormatFacts& format, GLenum type) {
