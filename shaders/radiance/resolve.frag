@@ -1,6 +1,6 @@
 #version 450 core
 // Mean over the fragments of a pixel, weighted by the samples that each one covers. Words of the
-// index: more (1 bit), samples, address (ADDRESS_BITS); see src/radiance/resolve.cpp.
+// index: more (1 bit), samples, address (ADDRESS_BITS); see src/radiance/packed_fragments.h.
 const int WIDTH_SHIFT = 10;
 const int WIDTH_MASK = (1 << WIDTH_SHIFT) - 1;
 const uint ADDRESS_MASK = (1u << ADDRESS_BITS) - 1u;

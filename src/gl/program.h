@@ -1,4 +1,4 @@
-// Errors that OpenGL keeps to itself until asked.
+// Linked GLSL programs and their uniforms, and errors that OpenGL keeps to itself until asked.
 #pragma once
 
 #include <filesystem>

@@ -9,7 +9,7 @@
 #include "core/progress.h"
 #include "ledger/effect_errors.h"
 #include "ledger/pass_costs.h"
-#include "radiance/work_items.h"
+#include "radiance/stages.h"
 #include "scene/frame_plan.h"
 #include "scene/view.h"
 

@@ -1,4 +1,5 @@
-// The bench's photographs for people to look at, without any calibration.
+// The simulated bench on a thread of its own: its photograph of the mock-up, for people to look at,
+// and its calibration.
 #pragma once
 
 #include <cstdint>

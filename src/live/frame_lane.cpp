@@ -47,11 +47,16 @@ bool all_same(const std::vector<T>& a, const std::vector<T>& b, bool (*same)(con
     return std::equal(a.begin(), a.end(), b.begin(), b.end(), same);
 }
 
-const Scene& side_of(const FrameDescription& description, std::size_t side) {
-    return side == 0 ? description.scene : *description.wipe_to;
+/// In one light.
+bool looks_the_same(const Scene& a, const Scene& b) {
+    return all_same(a.part_materials, b.part_materials, same_reflectance) &&
+           all_same(a.artwork, b.artwork, looks_alike) && a.exposure_ev == b.exposure_ev;
 }
 
-std::size_t side_count(const FrameDescription& description) { return description.wipe_to ? 2 : 1; }
+bool serves(const FrameGeometry& geometry, const SolveKey& key) {
+    return geometry.product == key.product && geometry.view == key.view &&
+           geometry.map.samples_per_pixel >= sub_samples_of(key.levels);
+}
 
 /// `more` into `plan`: milliseconds are added up, and passes that it lacks put in where they stand.
 void add_milliseconds(FramePlan& plan, const FramePlan& more, bool add_passes) {
@@ -120,12 +125,12 @@ std::shared_ptr<const FrameGeometry> GeometryCache::get(const SolveKey& key,
     std::shared_ptr<const FrameGeometry> known;
     {
         const std::scoped_lock lock(mutex_);
-        if (newest_ && same_pose({newest_->product, newest_->view, {}, {}, {}, {}}, key)) {
+        if (newest_ && newest_->product == key.product && newest_->view == key.view) {
             known = newest_;
         }
     }
+    if (known && serves(*known, key)) return known;
     const int sub_samples = sub_samples_of(key.levels);
-    if (known && known->map.samples_per_pixel >= sub_samples) return known;
     auto made =
         known ? std::make_shared<const FrameGeometry>(*known, sub_samples, progress)
               : std::make_shared<const FrameGeometry>(key.product, key.view, progress, sub_samples);
@@ -139,22 +144,22 @@ FrameLane::FrameLane(std::shared_ptr<GeometryCache> geometries, ShadingDevice de
       device_(chosen_device(device)),
       path_(make_drive_path(device_)) {}
 
-void FrameLane::solve(const FrameDescription& description,
+void FrameLane::solve(const WantedFrame& frame,
                       const EffectLevels& levels,
                       std::optional<Urgency> urgency,
                       const Progress& progress) {
-    SolveKeys keys = with_levels(keys_of(description), levels);
+    SolveKeys keys = with_levels(frame.keys, levels);
     if (keys[1] && serves_both(*keys[0], *keys[1])) keys[1].reset();
     solved_ = {};
     prepared_ = false;
     sides_ = {};
-    const double share = 1.0 / static_cast<double>(side_count(description));
-    solve_light(0, description.scene, *keys[0], urgency, progress.part(0.0, share));
+    const double share = 1.0 / static_cast<double>(frame.sides());
+    solve_light(0, frame.scene, *keys[0], urgency, progress.part(0.0, share));
     if (!keys[1]) lights_[1] = {};
-    if (description.wipe_to) {
+    if (frame.wipe_to) {
         // Where both have one light, its paints may mirror other layers of it
         const std::size_t index = keys[1] ? 1 : 0;
-        solve_light(index, *description.wipe_to, *keys[index], urgency, progress.part(share, 1.0));
+        solve_light(index, *frame.wipe_to, *keys[index], urgency, progress.part(share, 1.0));
     }
     solved_ = std::move(keys);
     note_mirrors();
@@ -174,11 +179,7 @@ void FrameLane::solve_light(std::size_t index,
     constexpr double kGeometryShare = 0.3;
     Solved& light = lights_[index];
     FramePlan plan = plan_frame(scene, key.levels, FrameStage::projector);
-    const auto serves = [&](const FrameGeometry& geometry) {
-        return same_pose({geometry.product, geometry.view, {}, {}, {}, {}}, key) &&
-               geometry.map.samples_per_pixel >= sub_samples_of(key.levels);
-    };
-    if (!light.renderer || !serves(*light.renderer->geometry())) {
+    if (!light.renderer || !serves(*light.renderer->geometry(), key)) {
         light = {};
         std::shared_ptr<const FrameGeometry> geometry;
         run_giving_way(
@@ -191,16 +192,16 @@ void FrameLane::solve_light(std::size_t index,
     light.untold = std::move(plan);
 }
 
-void FrameLane::prepare(const FrameDescription& description, const Progress& progress) {
-    prepare_mirrors(description, progress.part(0.0, 0.5));
-    prepare_programs(description, Progress{{}, progress.stop});
+void FrameLane::prepare(const WantedFrame& frame, const Progress& progress) {
+    prepare_mirrors(frame, progress.part(0.0, 0.5));
+    prepare_programs(frame, Progress{{}, progress.stop});
     prepared_ = true;
 }
 
-void FrameLane::prepare_programs(const FrameDescription& description, const Progress& progress) {
-    std::set<ProgramOf> programs = programs_likely_next(description.library.get());
-    for (std::size_t side = 0; side < side_count(description); ++side) {
-        any_paint(side_of(description, side), [&](const Material& paint) {
+void FrameLane::prepare_programs(const WantedFrame& frame, const Progress& progress) {
+    std::set<ProgramOf> programs = programs_likely_next(frame.library.get());
+    for (std::size_t side = 0; side < frame.sides(); ++side) {
+        any_paint(frame.side(side), [&](const Material& paint) {
             programs.emplace(paint);
             return false;
         });
@@ -208,13 +209,13 @@ void FrameLane::prepare_programs(const FrameDescription& description, const Prog
     for (const ProgramOf& program : programs) {
         const auto start = Clock::now();
         bool used = false;
-        for (std::size_t side = 0; side < side_count(description); ++side) {
-            Scene scene = scene_of(description, side);
+        for (std::size_t side = 0; side < frame.sides(); ++side) {
+            Scene scene = scene_of(frame, side);
             for (Material& paint : scene.part_materials) {
                 used = used || ProgramOf(paint) == program;
                 paint = plain_paint(program);
             }
-            const std::size_t index = nearest_of(solved_, keys_of(description), side);
+            const std::size_t index = nearest_of(solved_, frame.keys, side);
             RadianceRenderer& renderer = *lights_[index].renderer;
             FramePlan plan = plan_frame(scene, solved_[index]->levels, FrameStage::projector);
             run_giving_way(Urgency::background,
@@ -232,13 +233,13 @@ void FrameLane::prepare_programs(const FrameDescription& description, const Prog
     }
 }
 
-void FrameLane::prepare_mirrors(const FrameDescription& description, const Progress& progress) {
+void FrameLane::prepare_mirrors(const WantedFrame& frame, const Progress& progress) {
     prepare_passes_.clear();
     std::set<std::size_t> lights;
-    for (std::size_t side = 0; side < side_count(description); ++side) {
-        const std::size_t index = nearest_of(solved_, keys_of(description), side);
+    for (std::size_t side = 0; side < frame.sides(); ++side) {
+        const std::size_t index = nearest_of(solved_, frame.keys, side);
         if (!lights.insert(index).second) continue;  // both sides have it
-        const Scene scene = scene_of(description, side);
+        const Scene scene = scene_of(frame, side);
         FramePlan plan = plan_frame(scene, solved_[index]->levels, FrameStage::projector);
         plan_ahead(plan);
         PlannedPass* pass = find_pass(plan, mirrored_ahead_pass());
@@ -253,16 +254,13 @@ void FrameLane::prepare_mirrors(const FrameDescription& description, const Progr
     note_mirrors();
 }
 
-bool can_draw(const SolveKeys& solved,
-              const SolvedMirrors& mirrors,
-              const FrameDescription& description) {
-    if (!solved[0]) return false;
-    const SolveKeys keys = keys_of(description);
-    for (std::size_t side = 0; side < side_count(description); ++side) {
-        if (!same_pose(*solved[0], *keys[side])) return false;
+bool can_draw(const SolveKeys& solved, const SolvedMirrors& mirrors, const WantedFrame& frame) {
+    if (!solved[0] || !frame.malformed.empty()) return false;
+    for (std::size_t side = 0; side < frame.sides(); ++side) {
+        if (!same_pose(*solved[0], *frame.keys[side])) return false;
         try {
-            const std::size_t light = nearest_of(solved, keys, side);
-            if (!mirrors[light].serves(side_of(description, side))) return false;
+            const std::size_t light = nearest_of(solved, frame.keys, side);
+            if (!mirrors[light].serves(frame.side(side))) return false;
         } catch (const std::invalid_argument&) {
             continue;  // a paint that cannot be: drawing it says why
         }
@@ -270,18 +268,18 @@ bool can_draw(const SolveKeys& solved,
     return true;
 }
 
-bool FrameLane::can_draw(const FrameDescription& description) const {
-    return livery::can_draw(solved_, mirrors_, description);
+bool FrameLane::can_draw(const WantedFrame& frame) const {
+    return livery::can_draw(solved_, mirrors_, frame);
 }
 
-Scene FrameLane::scene_of(const FrameDescription& description, std::size_t side) const {
-    Scene scene = side_of(description, side);
-    const SolveKey& light = *solved_[nearest_of(solved_, keys_of(description), side)];
+Scene FrameLane::scene_of(const WantedFrame& frame, std::size_t side) const {
+    Scene scene = frame.side(side);
+    const SolveKey& light = *solved_[nearest_of(solved_, frame.keys, side)];
     scene.environment = light.environment;
     scene.lights = light.lights;
     scene.eye_in_world_mm = light.eye_mm;
     scene.relief = light.relief;
-    if (const auto part = description.glowing_part) {
+    if (const auto part = frame.glowing_part) {
         check_argument(
             *part >= 0 && static_cast<std::size_t>(*part) < scene.part_materials.size(),
             fmt::format(
@@ -294,48 +292,51 @@ Scene FrameLane::scene_of(const FrameDescription& description, std::size_t side)
     return scene;
 }
 
-void FrameLane::draw_ahead(const FrameDescription& description) {
-    draw_picture(description);
+void FrameLane::draw_ahead(const WantedFrame& frame) {
+    draw_picture(frame);
     for (Side& side : sides_) side.told = false;
 }
 
-std::shared_ptr<FinishedFrame> FrameLane::draw(const FrameDescription& description) {
-    std::shared_ptr<FinishedFrame> frame = draw_picture(description);
-    frame->plan = told_plan(description.wipe_to.has_value());
-    frame->scene = scene_of(description, 0);
-    return frame;
+std::shared_ptr<FinishedFrame> FrameLane::draw(const WantedFrame& frame) {
+    std::shared_ptr<FinishedFrame> finished = draw_picture(frame);
+    finished->plan = told_plan(frame.wipe_to.has_value());
+    finished->scene = sides_[0].scene;
+    if (frame.wipe_to) finished->wiped_to = sides_[1].scene;
+    return finished;
 }
 
-std::shared_ptr<FinishedFrame> FrameLane::draw_picture(const FrameDescription& description) try {
+std::shared_ptr<FinishedFrame> FrameLane::draw_picture(const WantedFrame& frame) try {
     const auto start = Clock::now();
-    check_argument(can_draw(description), "this frame's light was not solved");
-    auto frame = std::make_shared<FinishedFrame>();
+    check_argument(frame.malformed.empty(), frame.malformed);
+    check_argument(can_draw(frame), "this frame's light was not solved");
+    auto finished = std::make_shared<FinishedFrame>();
     std::array<bool, 2> was_ahead{};
-    for (std::size_t side = 0; side < side_count(description); ++side) {
+    for (std::size_t side = 0; side < frame.sides(); ++side) {
         const bool ahead = !sides_[side].told;
-        draw_side(description, side);
+        draw_side(frame, side);
         was_ahead[side] = ahead;
     }
-    compose(description);
+    compose(frame);
     // The whole frame is on its way: what waits for numbers keeps nothing from being done.
-    for (std::size_t side = 0; side < side_count(description); ++side) {
+    for (std::size_t side = 0; side < frame.sides(); ++side) {
         measure_side(side);
-        frame->shade_ms += sides_[side].shade_ms;
-        frame->compensate_ms += sides_[side].compensate_ms;
-        if (was_ahead[side]) frame->ms_total += sides_[side].shade_ms + sides_[side].compensate_ms;
+        const double side_ms = sides_[side].shade_ms + sides_[side].compensate_ms;
+        finished->shade_ms += sides_[side].shade_ms;
+        finished->compensate_ms += sides_[side].compensate_ms;
+        if (was_ahead[side]) finished->ms_total += side_ms;
     }
     const auto& slot = composed_.pictures->drive.slot;
-    frame->number = description.number;
-    frame->drive_texture = slot->texture.name();
-    frame->size_px = {slot->texture.width(), slot->texture.height()};
-    frame->ready = {slot, &slot->ready};
-    frame->fade_s = description.fade_s;
-    frame->pictures = composed_.pictures;
-    frame->compensation = sides_[0].compensation;
-    frame->asked_at = description.asked_at;
-    frame->ms_total += milliseconds_since(start);
-    frame->done_at = Clock::now();
-    return frame;
+    finished->number = frame.number;
+    finished->drive_texture = slot->texture.name();
+    finished->size_px = {slot->texture.width(), slot->texture.height()};
+    finished->ready = {slot, &slot->ready};
+    finished->fade_s = frame.fade_s;
+    finished->pictures = composed_.pictures;
+    finished->compensation = sides_[0].compensation;
+    finished->asked_at = frame.asked_at;
+    finished->ms_total += milliseconds_since(start);
+    finished->done_at = Clock::now();
+    return finished;
 } catch (const std::invalid_argument&) {
     throw;
 } catch (...) {
@@ -348,66 +349,57 @@ std::shared_ptr<FinishedFrame> FrameLane::draw_picture(const FrameDescription& d
     throw;
 }
 
-FramePlan FrameLane::plan_side(const FrameDescription& description, std::size_t index) const {
-    const std::size_t light = nearest_of(solved_, keys_of(description), index);
-    const Scene scene = scene_of(description, index);
+FramePlan FrameLane::plan_side(const Scene& scene,
+                               std::size_t light,
+                               const ProjectorSetup& setup) const {
     FramePlan plan = plan_frame(scene, solved_[light]->levels, FrameStage::projector);
-    // Also of a picture that is there already: what it shows has its price
-    lights_[light].renderer->count_work(scene, plan);
     PlannedPass& pass = *find_pass(plan, PassKind::compensation);
-    const auto& table = description.setup->table;
-    if (!table) pass.why = "without a calibration the frame goes out as sRGB";
-    pass.why += device_ == ShadingDevice::gl ? ", made on the graphics card, which shades it"
-                                             : ", made on the processor, which shades it";
-    pass.work_items =
-        static_cast<double>(table ? table->pixels.size()
-                                  : lights_[light].renderer->surface_map().coverage.pixel_count());
+    pass.why = fmt::format("{}, made on the {}, which shades it",
+                           setup.table ? "the frame goes to the projector"
+                                       : "without a calibration the frame goes out as sRGB",
+                           device_ == ShadingDevice::gl ? "graphics card" : "processor");
+    const std::size_t pixels = setup.table
+                                   ? setup.table->pixels.size()
+                                   : lights_[light].renderer->surface_map().coverage.pixel_count();
+    pass.work_items = static_cast<double>(pixels);
     return plan;
 }
 
-void FrameLane::draw_side(const FrameDescription& description, std::size_t index) {
+void FrameLane::draw_side(const WantedFrame& frame, std::size_t index) {
     Side& side = sides_[index];
-    const Scene scene = scene_of(description, index);
-    const std::size_t light = nearest_of(solved_, keys_of(description), index);
-    const bool painted = side.radiance &&
-                         all_same(side.paints, scene.part_materials, same_reflectance) &&
-                         all_same(side.artwork, scene.artwork, looks_alike) &&
-                         side.exposure_ev == scene.exposure_ev && side.light == light;
+    Scene scene = scene_of(frame, index);
+    const std::size_t light = nearest_of(solved_, frame.keys, index);
+    const bool painted = side.radiance && side.light == light && looks_the_same(side.scene, scene);
     const bool ahead = !std::exchange(side.told, true);
-    if (ahead && painted && side.setup == description.setup) return;
-    FramePlan plan = plan_side(description, index);
-    for (PlannedPass& pass : plan.passes) pass.ms = 0.0;
-    if (ahead) {
-        add_milliseconds(plan, side.plan, false);
-    } else {
-        side.shade_ms = side.compensate_ms = 0.0;
-    }
-    side.plan = std::move(plan);
-    if (!painted) {
-        side.radiance = {};
-        const auto start = Clock::now();
+    if (!ahead || !painted || side.setup != frame.setup) {
+        FramePlan plan = plan_side(scene, light, *frame.setup);
         RadianceRenderer& renderer = *lights_[light].renderer;
-        FramePlan drawn = plan_side(description, index);
-        // What a new paint sends to other parts is solved on the back lane (solve_key.h).
-        renderer.render(scene, drawn, {}, LightBetweenParts::kept);
-        auto radiance = path_->take(renderer);
-        side.shade_ms += milliseconds_since(start);
-        add_milliseconds(drawn, side.plan, false);
-        side.plan = std::move(drawn);
-        side.radiance = std::move(radiance);
-        side.paints = scene.part_materials;
-        side.artwork = scene.artwork;
-        side.exposure_ev = scene.exposure_ev;
-        side.light = light;
-        if (auto& untold = lights_[light].untold) {
-            add_milliseconds(side.plan, *untold, false);
+        if (!ahead) side.shade_ms = side.compensate_ms = 0.0;
+        if (painted) {
+            renderer.count_work(scene, plan);  // what it shows has its price
+        } else {
+            side.radiance = {};
+            const auto start = Clock::now();
+            // What a new paint sends to other parts is solved on the back lane.
+            renderer.render(scene, plan, {}, LightBetweenParts::kept);
+            side.radiance = path_->take(renderer);
+            side.shade_ms += milliseconds_since(start);
+            side.light = light;
+        }
+        for (PlannedPass& pass : plan.passes) pass.ms = pass.ms.value_or(0.0);
+        if (ahead) add_milliseconds(plan, side.plan, false);
+        auto& untold = lights_[light].untold;
+        if (!painted && untold) {
+            add_milliseconds(plan, *untold, false);
             untold.reset();
         }
+        side.plan = std::move(plan);
     }
-    if (painted && side.setup == description.setup) return;
+    side.scene = std::move(scene);
+    if (painted && side.setup == frame.setup) return;
     side.setup = nullptr;  // until it worked
-    correct_side(description.setup, index);
-    side.setup = description.setup;
+    correct_side(frame.setup, index);
+    side.setup = frame.setup;
 }
 
 void FrameLane::correct_side(const std::shared_ptr<const ProjectorSetup>& setup,
@@ -431,23 +423,22 @@ void FrameLane::measure_side(std::size_t index) {
     pass.ms = pass.ms.value_or(0.0) + measured.ms;
 }
 
-void FrameLane::compose(const FrameDescription& description) {
+void FrameLane::compose(const WantedFrame& frame) {
     auto pictures = std::make_shared<FramePictures>();
     Composed next;
-    for (std::size_t side = 0; side < side_count(description); ++side) {
+    for (std::size_t side = 0; side < frame.sides(); ++side) {
         next.from[side] = sides_[side].drive;
         pictures->radiance[side] = sides_[side].radiance;
     }
-    if (description.wipe_to) {
-        pictures->column = wipe_column(lights_[0].renderer->surface_map(), description.wipe_at);
+    if (frame.wipe_to) {
+        pictures->column = wipe_column(lights_[0].renderer->surface_map(), frame.wipe_at);
     }
     if (composed_.pictures && next.from == composed_.from &&
         pictures->column == composed_.pictures->column) {
         return;
     }
-    pictures->drive = description.wipe_to
-                          ? path_->join(next.from[0], next.from[1], pictures->column)
-                          : path_->show(next.from[0]);
+    pictures->drive = frame.wipe_to ? path_->join(next.from[0], next.from[1], pictures->column)
+                                    : path_->show(next.from[0]);
     next.pictures = std::move(pictures);
     composed_ = std::move(next);
 }

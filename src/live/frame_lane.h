@@ -10,9 +10,9 @@
 
 #include "core/progress.h"
 #include "live/drive_path.h"
+#include "live/frame_description.h"
 #include "live/frame_thread.h"
 #include "live/low_priority.h"
-#include "live/solve_key.h"
 #include "radiance/renderer.h"
 
 namespace livery {
@@ -39,9 +39,7 @@ using SolvedMirrors = std::array<SolvedMirror, 2>;
 
 /// Whether a lane that has solved this can draw the description without solving more: the same
 /// pose, and all that its paints mirror.
-bool can_draw(const SolveKeys& solved,
-              const SolvedMirrors& mirrors,
-              const FrameDescription& description);
+bool can_draw(const SolveKeys& solved, const SolvedMirrors& mirrors, const WantedFrame& frame);
 
 /// For one thread, with its context current from creation to destruction.
 class FrameLane {
@@ -52,24 +50,24 @@ class FrameLane {
     /// Solves the description's light at these levels; rays are traced on threads that give way as
     /// `urgency` says (none: on this thread, at its own priority). After a stop nothing can be
     /// drawn until a solve went through, which takes up what is there.
-    void solve(const FrameDescription& description,
+    void solve(const WantedFrame& frame,
                const EffectLevels& levels,
                std::optional<Urgency> urgency,
                const Progress& progress);
     /// What any other paint may need in the light that is solved, so that none has to wait.
-    void prepare(const FrameDescription& description, const Progress& progress);
+    void prepare(const WantedFrame& frame, const Progress& progress);
 
     const SolveKeys& solved() const { return solved_; }
     const SolvedMirrors& mirrors() const { return mirrors_; }
     bool is_prepared() const { return prepared_; }  ///< for any other paint
-    bool can_draw(const FrameDescription& description) const;
+    bool can_draw(const WantedFrame& frame) const;
 
     /// The description's paints in the light that is solved; only what changed since the last one
     /// is drawn. Throws what goes wrong; after anything but std::invalid_argument the lane starts
     /// anew.
-    std::shared_ptr<FinishedFrame> draw(const FrameDescription& description);
+    std::shared_ptr<FinishedFrame> draw(const WantedFrame& frame);
     /// The same ahead of draw(), which then tells what it cost.
-    void draw_ahead(const FrameDescription& description);
+    void draw_ahead(const WantedFrame& frame);
 
     /// Of all its renderers and what follows on them.
     RadianceRenderer::Counters counters() const;
@@ -77,9 +75,7 @@ class FrameLane {
   private:
     /// One scene as last drawn.
     struct Side {
-        std::vector<Material> paints;  ///< with the glow
-        std::vector<PartArtwork> artwork;
-        double exposure_ev = 0.0;
+        Scene scene;            ///< in the light that is solved, and with the glow
         std::size_t light = 0;  ///< of lights_
         std::shared_ptr<const ProjectorSetup> setup;
         FramePicture<ImageF> radiance;  ///< none: not drawn
@@ -97,21 +93,21 @@ class FrameLane {
     };
 
     void note_mirrors();
-    void prepare_mirrors(const FrameDescription& description, const Progress& progress);
-    void prepare_programs(const FrameDescription& description, const Progress& progress);
+    void prepare_mirrors(const WantedFrame& frame, const Progress& progress);
+    void prepare_programs(const WantedFrame& frame, const Progress& progress);
     void solve_light(std::size_t index,
                      const Scene& scene,
                      const SolveKey& key,
                      std::optional<Urgency> urgency,
                      const Progress& progress);
-    std::shared_ptr<FinishedFrame> draw_picture(const FrameDescription& description);
-    Scene scene_of(const FrameDescription& description, std::size_t side) const;
-    /// Its passes, the correction's for the description's setup and this lane's device.
-    FramePlan plan_side(const FrameDescription& description, std::size_t index) const;
-    void draw_side(const FrameDescription& description, std::size_t side);
+    std::shared_ptr<FinishedFrame> draw_picture(const WantedFrame& frame);
+    Scene scene_of(const WantedFrame& frame, std::size_t side) const;
+    /// Its passes, the correction's for the setup and this lane's device.
+    FramePlan plan_side(const Scene& scene, std::size_t light, const ProjectorSetup& setup) const;
+    void draw_side(const WantedFrame& frame, std::size_t side);
     void correct_side(const std::shared_ptr<const ProjectorSetup>& setup, std::size_t index);
     void measure_side(std::size_t index);
-    void compose(const FrameDescription& description);
+    void compose(const WantedFrame& frame);
     FramePlan told_plan(bool wiped);
 
     std::shared_ptr<GeometryCache> geometries_;

@@ -5,8 +5,8 @@
 #include <memory>
 
 #include "core/image.h"
-#include "gl/timer.h"
 #include "gl/handles.h"
+#include "gl/timer.h"
 
 namespace livery {
 

@@ -12,13 +12,12 @@
 #include "core/parallel.h"
 #include "core/worker.h"
 #include "live/frame_lane.h"
-#include "live/solve_key.h"
 
 namespace livery {
 
 namespace {
 
-using Newest = std::shared_ptr<const FrameDescription>;
+using Newest = std::shared_ptr<const WantedFrame>;
 
 std::string reason_of(const std::exception_ptr& error) {
     try {
@@ -29,15 +28,6 @@ std::string reason_of(const std::exception_ptr& error) {
         return known.what();
     } catch (...) {
         return "an unknown error";
-    }
-}
-
-/// The description as keys_of() sees it, or nothing when it is malformed: drawing it says why.
-std::optional<SolveKeys> wanted_of(const FrameDescription& description) {
-    try {
-        return keys_of(description);
-    } catch (const std::invalid_argument&) {
-        return std::nullopt;
     }
 }
 
@@ -57,8 +47,8 @@ struct FrameJobs {
         SolvedMirrors mirrors;
         bool prepared = false;
         /// The newest's light, whatever its quality, and all that its paints mirror of it.
-        bool shows_light(const FrameDescription& newest, const SolveKeys& wanted) const {
-            return covers_light(solved, wanted) && can_draw(solved, mirrors, newest);
+        bool shows_light(const WantedFrame& newest) const {
+            return covers_light(solved, newest.keys) && can_draw(solved, mirrors, newest);
         }
     };
     std::array<LaneState, 2> lanes;
@@ -76,8 +66,7 @@ struct FrameJobs {
 
     std::optional<Task> next_task() const;
     bool front_can_draw(const FrameLane& lane) const;
-    std::string unfinished_of(const SolveKeys& solved, const SolveKeys& wanted) const;
-    bool disturbs(const FrameDescription& description) const;
+    bool disturbs(const WantedFrame& frame) const;
     void note(std::size_t index, const FrameLane& lane) {
         lanes[index] = {lane.solved(), lane.mirrors(), lane.is_prepared()};
     }
@@ -97,50 +86,41 @@ struct Told {
 /// a start for the next light. A draft leaves out what other paints would mirror: whoever drags a
 /// light waits for none of them.
 std::optional<FrameJobs::Task> FrameJobs::next_task() const {
-    if (!newest || newest == failed) return std::nullopt;
-    const auto wanted = wanted_of(*newest);
-    if (!wanted) return std::nullopt;
+    if (!newest || newest == failed || !newest->malformed.empty()) return std::nullopt;
+    const SolveKeys& wanted = newest->keys;
     const LaneState& ahead = lanes[front];
     const LaneState& own = lanes[1 - front];
-    const bool light_shown = ahead.shows_light(*newest, *wanted);
-    const bool all_shown = light_shown && missing_of(ahead.solved, *wanted).empty();
-    const bool solved_already =
-        own.shows_light(*newest, *wanted) && missing_of(own.solved, *wanted).empty();
+    const bool light_shown = ahead.shows_light(*newest);
+    const bool all_shown = light_shown && missing_of(ahead.solved, wanted).empty();
+    const bool solved_already = own.shows_light(*newest) && missing_of(own.solved, wanted).empty();
     if (all_shown && ahead.prepared) {
         if (newest->refined || (solved_already && own.prepared)) return std::nullopt;
-        return Task{newest, *wanted, false, true};
+        return Task{newest, wanted, false, true};
     }
     if (!light_shown && !solved_already) {
-        return Task{newest, with_levels(*wanted, levels_of(Quality::draft)), true, false};
+        return Task{newest, with_levels(wanted, levels_of(Quality::draft)), true, false};
     }
-    return Task{newest, *wanted, true, true};
+    return Task{newest, wanted, true, true};
 }
 
 bool FrameJobs::front_can_draw(const FrameLane& lane) const {
     if (!newest || newest == shown || front_held) return false;
     // A malformed one is drawn too: that says what is wrong with it.
-    return !wanted_of(*newest) || lane.can_draw(*newest);
+    return !newest->malformed.empty() || lane.can_draw(*newest);
 }
 
 /// Whether a description makes the task that runs worthless, or cannot wait for it. A draft is
 /// finished for its light even if a newer light waits, or a light that is dragged would never be
 /// seen to move.
-bool FrameJobs::disturbs(const FrameDescription& description) const {
-    if (!task) return false;
-    const auto wanted = wanted_of(description);
-    if (!wanted) return false;
+bool FrameJobs::disturbs(const WantedFrame& frame) const {
+    if (!task || !frame.malformed.empty()) return false;
     const bool draft_of_this_pose =
-        task->for_showing && !task->whole && same_pose(*task->wanted[0], *(*wanted)[0]);
+        task->for_showing && !task->whole && same_pose(*task->wanted[0], *frame.keys[0]);
     if (draft_of_this_pose) return false;
     const LaneState& ahead = lanes[front];
     const bool lacks_mirrors =
-        covers_light(ahead.solved, *wanted) && !can_draw(ahead.solved, ahead.mirrors, description);
-    return lacks_mirrors || !missing_of(task->wanted, *wanted).empty();
-}
-
-std::string FrameJobs::unfinished_of(const SolveKeys& solved, const SolveKeys& wanted) const {
-    const std::string missing = missing_of(solved, wanted);
-    return missing.empty() ? "" : missing + ": solving";
+        covers_light(ahead.solved, frame.keys) && !can_draw(ahead.solved, ahead.mirrors, frame);
+    return lacks_mirrors || !missing_of(task->wanted, frame.keys).empty();
 }
 
 }  // namespace
@@ -176,8 +156,9 @@ void FrameThread::Implementation::finish(FrameLane& lane, const Newest& descript
         fail(description, std::current_exception());
         return;
     }
+    const std::string missing = missing_of(lane.solved(), description->keys);
     worker.use([&](FrameJobs& jobs) {
-        frame->unfinished = jobs.unfinished_of(lane.solved(), keys_of(*description));
+        frame->unfinished = missing.empty() ? "" : missing + ": solving";
         jobs.last_good = frame;
         jobs.shown = description;
     });
@@ -253,8 +234,7 @@ void FrameThread::Implementation::hold_front() {
 /// True when this lane has drawn the newest, and is to be the front. Leaves the front held.
 bool FrameThread::Implementation::hand_over(FrameLane& lane) {
     const auto drawable = [&](const FrameJobs& jobs) {
-        const bool can = wanted_of(*jobs.newest) && lane.can_draw(*jobs.newest);
-        return can ? jobs.newest : nullptr;
+        return lane.can_draw(*jobs.newest) ? jobs.newest : nullptr;
     };
     // Paints that came meanwhile are drawn before the front is held, or they would wait for two
     // frames; whoever swaps faster than that waits once.
@@ -343,8 +323,8 @@ FrameThread::~FrameThread() {
     implementation_->stop = true;
 }
 
-void FrameThread::show(FrameDescription description) {
-    auto next = std::make_shared<const FrameDescription>(std::move(description));
+void FrameThread::show(WantedFrame frame) {
+    auto next = std::make_shared<const WantedFrame>(std::move(frame));
     implementation_->worker.change([&](FrameJobs& jobs) {
         if (jobs.disturbs(*next)) implementation_->stop = true;
         jobs.newest = std::move(next);

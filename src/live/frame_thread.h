@@ -11,34 +11,13 @@
 
 #include <glm/vec2.hpp>
 
-#include "appearance/material_library.h"
 #include "gl/context.h"
 #include "gl/timer.h"
+#include "live/frame_description.h"
 #include "live/frame_pictures.h"
-#include "live/projector_setup.h"
 #include "radiance/lanes/input_layers.h"
-#include "scene/frame_plan.h"
-#include "scene/scene.h"
 
 namespace livery {
-
-/// What the mock-up is to show: one immutable value.
-struct FrameDescription {
-    std::uint64_t number = 0;  ///< rises
-    Scene scene;
-    std::optional<Scene> wipe_to;  ///< shown right of `wipe_at`
-    double wipe_at = 0.5;          ///< fraction of the mock-up's width in the projector's picture
-    std::optional<int> glowing_part;  ///< clicked in the preview: glows on the mock-up
-    Quality quality = Quality::normal;
-    std::optional<EffectLevels> levels;  ///< chosen one by one; none: the quality's
-    /// At finer levels than a next light will be asked for: only what is shown is solved, not the
-    /// lane behind it.
-    bool refined = false;
-    double fade_s = 0.0;  ///< how long each picture of it takes to come
-    std::shared_ptr<const ProjectorSetup> setup;
-    std::shared_ptr<const PaintLibrary> library;       ///< what is likely to be next; null: nothing
-    std::chrono::steady_clock::time_point asked_at{};  ///< of the input that caused it
-};
 
 /// A finished one. Textures belong to the share group and live as long as this value, which may be
 /// let go of on any thread, and end with the FrameThread. A number comes again when more of the
@@ -51,6 +30,7 @@ struct FinishedFrame {
     double fade_s = 0.0;                            ///< as described
     std::shared_ptr<const FramePictures> pictures;  ///< for the bench and for files
     Scene scene;                                    ///< drawn, left of a wipe
+    std::optional<Scene> wiped_to;                  ///< right of it
     FramePlan plan;  ///< measured milliseconds, and "prepare:..." passes that ran ahead
     CompensationStats compensation;
     double shade_ms = 0.0, compensate_ms = 0.0, ms_total = 0.0;
@@ -82,7 +62,7 @@ class FrameThread {
     FrameThread(const FrameThread&) = delete;
     FrameThread& operator=(const FrameThread&) = delete;
 
-    void show(FrameDescription description);  ///< any thread, returns at once
+    void show(WantedFrame frame);  ///< any thread, returns at once
     /// How far a slow solve is; nothing when none runs.
     struct Solving {
         double fraction = 0.0;

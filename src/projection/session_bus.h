@@ -1,4 +1,5 @@
-// A thread that waits for descriptors hears other threads through this.
+// The desktop's session bus (D-Bus), where there is one, and how threads that wait for descriptors
+// hear others. Every question has a short timeout: nothing waits for a desktop.
 #pragma once
 
 #include <array>

@@ -9,7 +9,6 @@
 
 #include "core/parallel.h"
 #include "scene/artwork_cover.h"
-#include "scene/artwork_relief.h"
 
 namespace livery {
 
@@ -159,7 +158,7 @@ ArtworkInputs::ArtworkInputs(const Mesh& mesh,
       layout_(layout),
       device_(device),
       footprints_(mesh.parts.size()),
-      changed_parts_(mesh.parts.size(), false) {}
+      versions_(mesh.parts.size(), 0) {}
 
 bool ArtworkInputs::stands(const Scene& scene) const {
     return std::equal(scene.artwork.begin(),
@@ -190,14 +189,14 @@ bool ArtworkInputs::solve(const Scene& scene) {
     const auto mark_against = [&](const auto& these, const auto& those) {
         for (const auto& solved : these) {
             if (std::find(those.begin(), those.end(), solved) == those.end()) {
-                changed_parts_[solved->of.part] = true;
+                ++versions_[solved->of.part];
             }
         }
     };
     mark_against(next, solved_);
     mark_against(solved_, next);
     for (std::size_t k = 0; k < std::min(next.size(), solved_.size()); ++k) {
-        if (next[k] != solved_[k]) changed_parts_[next[k]->of.part] = true;
+        if (next[k] != solved_[k]) ++versions_[next[k]->of.part];
     }
     solved_ = std::move(next);
     std::erase_if(pictures_, [&](const Picture& picture) {
@@ -281,10 +280,6 @@ void ArtworkInputs::upload() {
         solved->texels.clear();
         solved->texels.shrink_to_fit();
     }
-}
-
-std::vector<bool> ArtworkInputs::take_changed_parts() {
-    return std::exchange(changed_parts_, std::vector<bool>(changed_parts_.size(), false));
 }
 
 }  // namespace livery

@@ -64,8 +64,8 @@ class ArtworkInputs {
     const InputLayers& layers(std::size_t artwork) const { return solved_[artwork]->layers; }
     /// How many fragments it covers any of.
     std::size_t covered(std::size_t artwork) const { return solved_[artwork]->covered; }
-    /// The parts over which what was solved last lies in another way than before.
-    std::vector<bool> take_changed_parts();
+    /// Grows when what lies over the part lies in another way than before.
+    int version(std::size_t part) const { return versions_[part]; }
 
     int layers_made() const { return layers_made_; }
 
@@ -95,7 +95,7 @@ class ArtworkInputs {
     std::vector<std::shared_ptr<Solved>> solved_;  ///< one for each of the scene's
     std::vector<Picture> pictures_;
     std::vector<std::vector<Footprint>> footprints_;  ///< of parts that wore artwork
-    std::vector<bool> changed_parts_;
+    std::vector<int> versions_;                       ///< of each part
     int layers_made_ = 0;
 };
 

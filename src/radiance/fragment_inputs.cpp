@@ -1,12 +1,10 @@
 #include "radiance/fragment_inputs.h"
 
 #include <algorithm>
-#include <array>
-#include <chrono>
-#include <stdexcept>
 #include <utility>
 
 #include "appearance/subsurface/translucent_paint.h"
+#include "radiance/renderer.h"
 
 namespace livery {
 namespace {
@@ -31,61 +29,42 @@ const std::shared_ptr<const Environment>& no_environment() {
 
 }  // namespace
 
-FragmentRays rays_of(const EffectLevels& levels) {
-    constexpr std::array kLight{0, 1, 16, 64};
-    constexpr std::array<SkyRays, 4> kSky{
-        {{0, 0, false}, {8, 0, true}, {16, 128, false}, {64, 256, false}}};
-    constexpr std::array kMirror{kNoNodes, 0, 16, 24};
-    constexpr std::array kBounces{0, 1, 16};
-    const auto at = [&](const auto& table, Effect effect) {
-        return table.at(static_cast<std::size_t>(levels[effect]));
-    };
-    const std::array<TransportDetail, 3> subsurface{{{}, {200, false}, {600, true}}};
-    return {at(kLight, Effect::shadows),
-            at(kSky, Effect::occlusion),
-            at(kMirror, Effect::mirrored_environment),
-            at(kBounces, Effect::interreflection),
-            at(subsurface, Effect::subsurface)};
+bool FragmentInputs::PaintsFrom::operator==(const PaintsFrom& other) const {
+    return same_relief(artwork, other.artwork) && std::equal(paints.begin(),
+                                                             paints.end(),
+                                                             other.paints.begin(),
+                                                             other.paints.end(),
+                                                             same_reflectance);
 }
 
-double StageClock::now_ms() {
-    const auto now = std::chrono::steady_clock::now().time_since_epoch();
-    return std::chrono::duration<double, std::milli>(now).count();
-}
-
-FragmentInputs::FragmentInputs(const Mesh& mesh,
-                               const Tracer& tracer,
-                               std::shared_ptr<SharedExchange> exchange,
-                               std::shared_ptr<SharedTransports> transports,
-                               const View& view,
-                               const SurfaceMap& map,
+FragmentInputs::FragmentInputs(const FrameGeometry& geometry,
                                const PackedLayout& layout,
                                ShadingDevice device,
                                bool keep_better,
                                InputLayers::Precision light_precision)
-    : mesh_(mesh),
-      tracer_(tracer),
-      shared_exchange_(std::move(exchange)),
-      pixels_(pixel_size_of(view)),
-      map_(&map),
+    : mesh_(geometry.product->mesh),
+      tracer_(*geometry.tracer),
+      shared_exchange_(geometry.exchange),
+      pixels_(pixel_size_of(geometry.view)),
+      map_(&geometry.map),
       layout_(layout),
       device_(device),
       keep_better_(keep_better),
       light_precision_(light_precision),
-      mirror_(mesh, tracer, map, layout),
-      subsurface_(mesh, tracer, std::move(transports)) {}
+      mirror_(mesh_, tracer_, geometry.map, layout),
+      subsurface_(mesh_, tracer_, geometry.transports) {}
 
 void FragmentInputs::use(const SurfaceMap& map) {
     map_ = &map;
+    ++map_version_;
     lights_.clear();
+    ++lights_version_;
     sky_visibility_.reset();
-    sky_made_ = {};
+    sky_.drop();
     mirror_.use(map);
     subsurface_.clear();
-    drop_exchange();
+    exchanged_.drop();
     runs_ = {};
-    eye_.reset();
-    directions_stale_ = sky_stale_ = diffuse_light_stale_ = places_stale_ = true;
 }
 
 const SmoothRuns& FragmentInputs::runs(Runs which) {
@@ -106,22 +85,19 @@ void FragmentInputs::solve(const Scene& scene,
                            StageClock& clock,
                            const Progress& progress,
                            bool keep_exchange) {
-    solve_lights(scene, plan, clock, progress);
-    solve_sky(scene, plan, clock, progress);
-    solve_exchange(scene, plan, clock, progress, keep_exchange);
-    solve_subsurface(scene, plan, clock, progress, keep_exchange);
-    solve_mirror(scene, plan, clock, progress, keep_exchange);
+    const Solve now{scene, plan, clock, progress, keep_exchange};
+    solve_lights(now);
+    solve_sky(now);
+    solve_exchange(now);
+    solve_subsurface(now);
+    solve_mirror(now);
 }
 
-void FragmentInputs::solve_lights(const Scene& scene,
-                                  const FramePlan& plan,
-                                  StageClock& clock,
-                                  const Progress& progress) {
-    const int rays = rays_of(plan.levels).light;
+void FragmentInputs::solve_lights(const Solve& now) {
+    const int rays = now.rays.light;
     std::size_t planned = 0;
-    for (std::size_t i = 0; i < scene.lights.size(); ++i) {
-        const PassId pass = visibility_pass(i);
-        const DirectionalLight& light = scene.lights[i];
+    for (std::size_t i = 0; i < now.scene.lights.size(); ++i) {
+        const DirectionalLight& light = now.scene.lights[i];
         if (light.radiance_rec709 == glm::dvec3(0.0)) continue;
         const auto found = std::find_if(lights_.begin(), lights_.end(), [&](const Light& l) {
             return l.index == i && enough(l.rays, rays) && same_disc(l.light, light);
@@ -136,164 +112,130 @@ void FragmentInputs::solve_lights(const Scene& scene,
             lights_.erase(found);
         }
         if (stale && rays == 0) next.at = unhidden_light(*map_, light);
-        clock.run(pass, stale, [&] {
+        now.clock.run(visibility_pass(i), stale, [&] {
             next.at = light_at_fragments(mesh_,
                                          tracer_,
                                          *map_,
                                          runs(rays == 1 ? Runs::dragged : Runs::fine),
                                          light,
                                          rays,
-                                         progress);
+                                         now.progress);
         });
         lights_.insert(lights_.begin() + static_cast<std::ptrdiff_t>(planned++), std::move(next));
-        if (changed) directions_stale_ = diffuse_light_stale_ = true;
-        if (changed) ++arriving_version_;
-        if (changed && !subsurface_.empty()) sky_stale_ = true;
+        if (changed) ++lights_version_;
     }
     if (planned == lights_.size()) return;
     lights_.resize(planned);
-    ++arriving_version_;
-    directions_stale_ = diffuse_light_stale_ = true;
-    if (!subsurface_.empty()) sky_stale_ = true;
+    ++lights_version_;
 }
 
-void FragmentInputs::solve_sky(const Scene& scene,
-                               const FramePlan& plan,
-                               StageClock& clock,
-                               const Progress& progress) {
-    if (!find_pass(plan, PassKind::environment_irradiance)) {
-        if (sky_made_.of) {
-            sky_stale_ = diffuse_light_stale_ = true;
-            ++arriving_version_;
-        }
-        sky_made_ = {};
+void FragmentInputs::solve_sky(const Solve& now) {
+    if (!now.plans(PassKind::environment_irradiance)) {
+        sky_.drop();
         diffused_ = nullptr;
         filtered_.diffuse = filtered_.blurred = filtered_.hardly_blurred = {};
-        sky_.clear();
         return;
     }
-    const bool occluded = find_pass(plan, PassKind::ambient_occlusion) != nullptr;
-    const SkyRays sky_rays = rays_of(plan.levels).sky;
+    const auto& environment = now.scene.environment;
+    const bool occluded = now.plans(PassKind::ambient_occlusion);
+    const SkyRays sky_rays = now.rays.sky;
     const int rays = occluded ? sky_rays.first : 0;
-    const bool stands = sky_made_.of == scene.environment && enough(sky_made_.rays, rays);
+    const bool stands =
+        sky_.from && sky_.from->environment == environment && enough(sky_.from->rays, rays);
     const bool visible =
         !occluded || stands || (sky_visibility_ && enough(sky_visibility_->rays.first, rays));
-    clock.run(PassKind::ambient_occlusion, !visible, [&] {
+    now.clock.run(PassKind::ambient_occlusion, !visible, [&] {
         sky_visibility_ =
-            solve_sky_visibility(mesh_, tracer_, *map_, runs(Runs::fine), sky_rays, progress);
+            solve_sky_visibility(mesh_, tracer_, *map_, runs(Runs::fine), sky_rays, now.progress);
     });
-    clock.run(PassKind::environment_irradiance, !stands, [&] {
-        if (!same_map(diffused_, scene.environment)) {
+    now.clock.run(PassKind::environment_irradiance, !stands, [&] {
+        if (!same_map(diffused_, environment)) {
             FilteredEnvironment filtered =
-                filter_environment(*scene.environment, {false, true, true, false}, progress);
+                filter_environment(*environment, {false, true, true, false}, now.progress);
             filtered_.diffuse = std::move(filtered.diffuse);
             filtered_.blurred = std::move(filtered.blurred);
             filtered_.hardly_blurred = std::move(filtered.hardly_blurred);
         }
-        diffused_ = scene.environment;
-        sky_ = sky_at_fragments(mesh_,
-                                *map_,
-                                *scene.environment,
-                                filtered_,
-                                occluded ? &*sky_visibility_ : nullptr,
-                                sky_rays.joints_only ? Hidden::share : Hidden::light,
-                                runs(Runs::dragged));
+        diffused_ = environment;
         const bool draft = !occluded || sky_rays.joints_only;
-        sky_made_ = {scene.environment, draft ? rays : sky_visibility_->rays.first};
-        ++arriving_version_;
-        sky_stale_ = diffuse_light_stale_ = true;
+        sky_.take({environment, draft ? rays : sky_visibility_->rays.first},
+                  sky_at_fragments(mesh_,
+                                   *map_,
+                                   *environment,
+                                   filtered_,
+                                   occluded ? &*sky_visibility_ : nullptr,
+                                   sky_rays.joints_only ? Hidden::share : Hidden::light,
+                                   runs(Runs::dragged)));
     });
 }
 
-void FragmentInputs::drop_exchange() {
-    exchanged_.at_nodes = {};
-    exchanged_.on_diffuser.clear();
-    ++exchanged_.version;
-    sky_stale_ = diffuse_light_stale_ = true;
-}
-
-void FragmentInputs::solve_exchange(const Scene& scene,
-                                    const FramePlan& plan,
-                                    StageClock& clock,
-                                    const Progress& progress,
-                                    bool keep) {
-    Exchanged& made = exchanged_;
-    if (!find_pass(plan, PassKind::interreflection)) {
-        if (!made.on_diffuser.empty() && !keep) drop_exchange();
+void FragmentInputs::solve_exchange(const Solve& now) {
+    if (!now.plans(PassKind::interreflection)) {
+        if (!now.keep_exchange) exchanged_.drop();
         return;
     }
-    const auto environment =
-        find_pass(plan, PassKind::environment_irradiance) ? scene.environment : nullptr;
-    const bool same_light = !made.direct.on_diffuser.empty() && made.lights == scene.lights &&
-                            made.environment == environment;
-    const int bounces = rays_of(plan.levels).bounces;
-    const bool same_paints =
-        same_relief(made.artwork, scene.artwork) && std::equal(made.paints.begin(),
-                                                               made.paints.end(),
-                                                               scene.part_materials.begin(),
-                                                               scene.part_materials.end(),
-                                                               same_reflectance);
-    const bool stands = keep || (same_light && !made.on_diffuser.empty() && same_paints &&
-                                 enough(made.bounces, bounces));
-    clock.run(PassKind::interreflection, !stands, [&] {
-        made.nodes = shared_exchange_->of(mesh_, tracer_, progress);
-        if (!same_paints) {
-            made.paints.clear();  // a stop leaves neither
-            made.reflectance =
-                reflectance_at_nodes(scene, made.nodes->nodes, made.nodes->directions);
+    DirectFrom light{now.scene.lights, nullptr, reflectance_.value.lobes};
+    if (now.plans(PassKind::environment_irradiance)) light.environment = now.scene.environment;
+    PaintsFrom paints{now.scene.part_materials, now.scene.artwork};
+    const int bounces = now.rays.bounces;
+    const auto stands = [&] {
+        return exchanged_.from && direct_.is_from(light) && reflectance_.is_from(paints) &&
+               exchanged_.from->direct == direct_.version &&
+               exchanged_.from->reflectance == reflectance_.version &&
+               enough(exchanged_.from->bounces, bounces);
+    };
+    now.clock.run(PassKind::interreflection, !now.keep_exchange && !stands(), [&] {
+        nodes_ = shared_exchange_->of(mesh_, tracer_, now.progress);
+        if (!reflectance_.is_from(paints)) {
+            reflectance_.take(std::move(paints),
+                              reflectance_at_nodes(now.scene, nodes_->nodes, nodes_->directions));
         }
-        const NodeReflectance& reflectance = made.reflectance;
-        if (!same_light || made.lobes != reflectance.lobes) {
-            made.direct = direct_light_at_nodes(mesh_,
-                                                tracer_,
-                                                *made.nodes,
-                                                scene.lights,
-                                                environment.get(),
-                                                filtered_,
-                                                reflectance.lobes,
-                                                progress);
-            made.lobes = reflectance.lobes;
-            made.lights = scene.lights;
-            made.environment = environment;
+        const NodeReflectance& reflectance = reflectance_.value;
+        light.lobes = reflectance.lobes;
+        if (!direct_.is_from(light)) {
+            DirectLight direct = direct_light_at_nodes(mesh_,
+                                                       tracer_,
+                                                       *nodes_,
+                                                       light.lights,
+                                                       light.environment.get(),
+                                                       filtered_,
+                                                       light.lobes,
+                                                       now.progress);
+            direct_.take(std::move(light), std::move(direct));
         }
-        made.at_nodes = exchanged_at_nodes(*made.nodes, made.direct, reflectance, bounces);
-        made.on_diffuser = at_fragments(mesh_, *map_, made.nodes->nodes, made.at_nodes.on_diffuser);
-        made.paints = scene.part_materials;
-        made.artwork = scene.artwork;
-        made.bounces = bounces;
-        ++made.version;
-        sky_stale_ = diffuse_light_stale_ = true;
+        Exchanged exchanged;
+        exchanged.at_nodes = exchanged_at_nodes(*nodes_, direct_.value, reflectance, bounces);
+        exchanged.on_diffuser =
+            at_fragments(mesh_, *map_, nodes_->nodes, exchanged.at_nodes.on_diffuser);
+        exchanged_.take({direct_.version, reflectance_.version, bounces}, std::move(exchanged));
     });
 }
 
-void FragmentInputs::solve_subsurface(const Scene& scene,
-                                      const FramePlan& plan,
-                                      StageClock& clock,
-                                      const Progress& progress,
-                                      bool keep) {
-    if (!find_pass(plan, PassKind::subsurface)) {
-        if (subsurface_.clear()) sky_stale_ = true;
+void FragmentInputs::solve_subsurface(const Solve& now) {
+    if (!now.plans(PassKind::subsurface)) {
+        subsurface_.clear();
         return;
     }
     SubsurfaceInputs::Wanted wanted;
-    wanted.detail = rays_of(plan.levels).subsurface;
-    wanted.lights = scene.lights;
-    if (find_pass(plan, PassKind::environment_irradiance)) wanted.environment = scene.environment;
+    wanted.detail = now.rays.subsurface;
+    wanted.lights = now.scene.lights;
+    if (now.plans(PassKind::environment_irradiance)) wanted.environment = now.scene.environment;
     wanted.exchange_version = exchanged_.version;
-    wanted.arriving_version = arriving_version_;
-    for (const Material& paint : scene.part_materials) {
+    wanted.arriving_version = lights_version_ + sky_.version;
+    for (const Material& paint : now.scene.part_materials) {
         const bool translucent = paint.model == ReflectanceModel::translucent;
         wanted.media.push_back(
-            translucent ? std::optional(on_mock_up(*paint.medium, scene.product->product_scale))
+            translucent ? std::optional(on_mock_up(*paint.medium, now.scene.product->product_scale))
                         : std::nullopt);
     }
-    if (keep) {
+    if (now.keep_exchange) {
         // Who cannot wait for light that spreads has it leave where it enters meanwhile
-        if (subsurface_.use_what_stands(wanted)) sky_stale_ = true;
-        clock.run(PassKind::subsurface, false, [] {});
+        subsurface_.use_what_stands(wanted);
+        now.clock.run(PassKind::subsurface, false, [] {});
         return;
     }
-    clock.run(PassKind::subsurface, !subsurface_.stands(wanted), [&] {
+    now.clock.run(PassKind::subsurface, !subsurface_.stands(wanted), [&] {
+        const std::vector<glm::vec3>& between = exchanged_.value.at_nodes.on_diffuser;
         subsurface_.solve(
             wanted,
             *map_,
@@ -302,10 +244,9 @@ void FragmentInputs::solve_subsurface(const Scene& scene,
                 return entering_at(i, medium, share, curvature_per_mm);
             },
             filtered_,
-            exchanged_.at_nodes.on_diffuser.empty() ? nullptr : exchanged_.nodes,
-            exchanged_.at_nodes.on_diffuser,
-            progress);
-        sky_stale_ = true;
+            between.empty() ? nullptr : nodes_,
+            between,
+            now.progress);
     });
 }
 
@@ -328,15 +269,14 @@ void FragmentInputs::filter_for_mirror(const std::shared_ptr<const Environment>&
     layered_ = environment;
 }
 
-void FragmentInputs::solve_mirror(const Scene& scene,
-                                  const FramePlan& plan,
-                                  StageClock& clock,
-                                  const Progress& progress,
-                                  bool keep_exchange) {
+void FragmentInputs::solve_mirror(const Solve& now) {
+    const Scene& scene = now.scene;
+    const FramePlan& plan = now.plan;
+    const Progress& progress = now.progress;
     // A scene whose paints do not mirror keeps what the next one may; one without anything to not.
-    const bool ahead = find_pass(plan, mirrored_ahead_pass()) != nullptr;
-    const bool sky = find_pass(plan, PassKind::environment_irradiance) != nullptr;
-    if (!ahead && !find_pass(plan, PassKind::mirrored_environment)) {
+    const bool ahead = now.plans(mirrored_ahead_pass());
+    const bool sky = now.plans(PassKind::environment_irradiance);
+    if (!ahead && !now.plans(PassKind::mirrored_environment)) {
         if (sky || parts_send_light(plan)) return;
         mirror_.clear();
         layered_ = look_up_of_ = nullptr;
@@ -346,22 +286,22 @@ void FragmentInputs::solve_mirror(const Scene& scene,
     }
     // Without what hides it, nothing is known of what other parts send into a mirror either
     const bool hides = plan.levels[Effect::reflected_occlusion] > 0;
-    const int nodes = rays_of(plan.levels).mirror;
+    const int nodes = now.rays.mirror;
     const std::shared_ptr<const Environment>& environment =
         sky ? scene.environment : no_environment();
     const auto any = [](const MirrorInputs::LayersOfParts& layers) {
         return std::any_of(layers.begin(), layers.end(), [](const auto& of) { return of.any(); });
     };
-    mirror_.hide_behind(exchanged_.at_nodes.sent.empty() ? nullptr : exchanged_.nodes,
-                        exchanged_.at_nodes.sent,
-                        exchanged_.version);
+    const NodeLight& sent = exchanged_.value.at_nodes.sent;
+    mirror_.hide_behind(sent.empty() ? nullptr : nodes_, sent, exchanged_.version);
     MirrorInputs::Light light{
         environment, scene.eye_in_world_mm, hides ? nodes : std::min(nodes, 0)};
     // Who keeps light between parts, or drags a lamp, draws with what was mirrored behind other
     // light of it, too
     const bool draft = light.nodes == kNoNodes;
     const auto missing_in = [&](const MirrorInputs::Light& in) {
-        return mirror_.missing(in, mirror_layers_of(scene, in.mixing()), !keep_exchange && !draft);
+        return mirror_.missing(
+            in, mirror_layers_of(scene, in.mixing()), !now.keep_exchange && !draft);
     };
     const MirrorInputs::Light& made = mirror_.light();
     if (made.environment == light.environment && made.eye_mm == light.eye_mm &&
@@ -381,13 +321,13 @@ void FragmentInputs::solve_mirror(const Scene& scene,
     };
     const bool filtered = mirror_filtered(environment, light.nodes);
     if (filtered) (light.nodes == kNoNodes ? look_up_of_ : layered_) = environment;
-    clock.run(PassKind::environment_filter, !filtered, [&] {
+    now.clock.run(PassKind::environment_filter, !filtered, [&] {
         filter_for_mirror(environment, light.nodes, progress);
     });
-    clock.run(PassKind::reflection_occlusion, mirror_.lacks_visibility(light, worn), [&] {
+    now.clock.run(PassKind::reflection_occlusion, mirror_.lacks_visibility(light, worn), [&] {
         mirror_.trace(light, worn, runs(Runs::of_rows), progress);
     });
-    clock.run(PassKind::mirrored_environment, any(worn), [&] { solve_layers(worn); });
+    now.clock.run(PassKind::mirrored_environment, any(worn), [&] { solve_layers(worn); });
     if (!ahead) return;
     const auto others = mirror_.missing(
         light,
@@ -395,7 +335,7 @@ void FragmentInputs::solve_mirror(const Scene& scene,
         false);
     const bool drag_ready = mirror_filtered(environment, kNoNodes) &&
                             runs_[static_cast<std::size_t>(Runs::dragged)].has_value();
-    clock.run(mirrored_ahead_pass(), any(others) || !drag_ready, [&] {
+    now.clock.run(mirrored_ahead_pass(), any(others) || !drag_ready, [&] {
         if (any(others)) {
             if (!mirror_filtered(environment, light.nodes))
                 filter_for_mirror(environment, light.nodes, progress);

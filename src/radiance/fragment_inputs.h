@@ -1,11 +1,11 @@
-// What shading reads of each fragment and what does not depend on the paint, solved on the CPU and
-// kept until the pose, the eye, a light or the environment changes.
+// What shading reads of each fragment and what does not depend on the paint, solved on the CPU.
+// Each value knows what it was made from, is made when a plan asks for it, and is kept while that
+// is valid.
 #pragma once
 
-#include <algorithm>
+#include <array>
 #include <memory>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "radiance/glints.h"
@@ -18,75 +18,40 @@
 #include "radiance/packed_fragments.h"
 #include "radiance/shading.h"
 #include "radiance/smooth_runs.h"
+#include "radiance/stages.h"
 #include "radiance/subsurface/subsurface_inputs.h"
 #include "scene/frame_plan.h"
 #include "scene/scene.h"
 
 namespace livery {
 
-/// What the levels of effects mean here; rays are a fragment's.
-struct FragmentRays {
-    int light = 16;   ///< toward each light with a size; 0: nothing is hidden
-    SkyRays sky;      ///< toward the environment; 0: nothing is hidden
-    int mirror = 16;  ///< nodes a ring of half vectors' slopes (mirror_rings), or kNoNodes
-    int bounces = 1;  ///< of light between parts
-    TransportDetail subsurface{};
-};
-FragmentRays rays_of(const EffectLevels& levels);
+struct FrameGeometry;
 
-/// Runs one stage where the plan lists it and its result does not stand; times it.
-class StageClock {
-  public:
-    /// `progress` hears of each stage that runs, as its place in the plan.
-    explicit StageClock(FramePlan& plan, const Progress* progress = nullptr)
-        : plan_(&plan), progress_(progress) {}
-    template <typename Work>
-    bool run(const PassId& pass, bool stale, const Work& work) {
-        PlannedPass* planned = find_pass(*plan_, pass);
-        if (!planned) return false;
-        planned->ms = 0.0;
-        if (!stale) return false;
-        // Passes do not all run in the plan's order, and progress never goes back
-        furthest_ = std::max(furthest_, place_of(*planned));
-        if (progress_) progress_->update(furthest_, to_string(pass));
-        const double begin = now_ms();
-        work();
-        planned->ms = now_ms() - begin;
-        ++passes_run_;
-        return true;
-    }
-    /// What a pass takes after it ran, listed or not.
-    template <typename Work>
-    void add(const PassId& pass, const Work& work) {
-        PlannedPass* planned = find_pass(*plan_, pass);
-        const double begin = now_ms();
-        work();
-        if (planned) planned->ms = planned->ms.value_or(0.0) + now_ms() - begin;
-    }
-    int passes_run() const { return passes_run_; }
-    static double now_ms();
+/// A value and what it was made from. Whatever is made from it keeps its version.
+template <typename From, typename Value>
+struct Made {
+    std::optional<From> from;  ///< none: not made
+    Value value{};
+    int version = 0;  ///< grows with each other value
 
-  private:
-    double place_of(const PlannedPass& pass) const {
-        return static_cast<double>(&pass - plan_->passes.data()) /
-               static_cast<double>(plan_->passes.size());
+    bool is_from(const From& wanted) const { return from && *from == wanted; }
+    void take(From its_from, Value its_value) {
+        from = std::move(its_from);
+        value = std::move(its_value);
+        ++version;
     }
-
-    FramePlan* plan_;
-    const Progress* progress_;
-    double furthest_ = 0.0;
-    int passes_run_ = 0;
+    void drop() {
+        if (!from) return;
+        from.reset();
+        value = Value();
+        ++version;
+    }
 };
 
 class FragmentInputs {
   public:
     /// With `keep_better`, what was solved with more rays than the plan's quality asks for stands.
-    FragmentInputs(const Mesh& mesh,
-                   const Tracer& tracer,
-                   std::shared_ptr<SharedExchange> exchange,
-                   std::shared_ptr<SharedTransports> transports,
-                   const View& view,
-                   const SurfaceMap& map,
+    FragmentInputs(const FrameGeometry& geometry,
                    const PackedLayout& layout,
                    ShadingDevice device,
                    bool keep_better,
@@ -103,13 +68,10 @@ class FragmentInputs {
                StageClock& clock,
                const Progress& progress,
                bool keep_exchange);
-    /// Which paints must be shaded again.
-    struct Changed {
-        bool diffuse = false;  ///< the plain diffuse ones
-        bool glossy = false;
-    };
     /// Hands what solve() changed to the device that shades.
-    Changed upload(const Scene& scene, StageClock& clock);
+    void upload(const Scene& scene, StageClock& clock);
+    /// Of all that a material reads of the device: grows when it must be shaded again.
+    int version_for(const Material& material) const;
     /// Of each part, the layers of what it mirrors that are solved in the last solve()'s light; all
     /// where that has no environment.
     SolvedMirror mirrored() const;
@@ -117,6 +79,16 @@ class FragmentInputs {
     int layers_made() const { return layers_made_; }
 
   private:
+    /// Of one call of solve().
+    struct Solve {
+        const Scene& scene;
+        const FramePlan& plan;
+        StageClock& clock;
+        const Progress& progress;
+        bool keep_exchange = false;
+        FragmentRays rays = rays_of(plan.levels);
+        bool plans(const PassId& pass) const { return find_pass(plan, pass) != nullptr; }
+    };
     /// Of map_; those for what is looked up while it is dragged have their ends farther apart.
     enum class Runs { fine, dragged, of_rows };
     const SmoothRuns& runs(Runs which);
@@ -126,20 +98,20 @@ class FragmentInputs {
         int rays = 0;
         std::vector<LightAtFragment> at;
     };
-    void solve_lights(const Scene&, const FramePlan&, StageClock&, const Progress&);
-    void solve_sky(const Scene&, const FramePlan&, StageClock&, const Progress&);
-    void solve_exchange(const Scene&, const FramePlan&, StageClock&, const Progress&, bool keep);
-    void solve_subsurface(const Scene&, const FramePlan&, StageClock&, const Progress&, bool keep);
-    void solve_mirror(
-        const Scene&, const FramePlan&, StageClock&, const Progress&, bool keep_exchange);
+    void solve_lights(const Solve& now);
+    void solve_sky(const Solve& now);
+    void solve_exchange(const Solve& now);
+    void solve_subsurface(const Solve& now);
+    void solve_mirror(const Solve& now);
     bool mirror_filtered(const std::shared_ptr<const Environment>&, int nodes) const;
     void filter_for_mirror(const std::shared_ptr<const Environment>&, int nodes, const Progress&);
-    void drop_exchange();
     template <typename Value>
     void upload_packed(InputLayers& input, int layer, const Value& value);
     void upload_eye(const Scene&);
     void upload_lights();
     void upload_sky();
+    /// From the environment and other parts, on a white diffuser.
+    glm::vec3 surrounding_light(std::size_t fragment) const;
     /// What enters a medium at a fragment, in units of what a white diffuser sends.
     /// `share` is entering_share() of the index.
     glm::vec3 entering_at(std::size_t fragment,
@@ -158,6 +130,7 @@ class FragmentInputs {
     const std::shared_ptr<SharedExchange> shared_exchange_;
     const PixelSize pixels_;
     const SurfaceMap* map_;
+    int map_version_ = 0;
     const PackedLayout& layout_;
 
     const ShadingDevice device_;
@@ -165,6 +138,7 @@ class FragmentInputs {
     const InputLayers::Precision light_precision_;  ///< of `lit`, `sky` and `mirror`
 
     std::vector<Light> lights_;
+    int lights_version_ = 0;
     FilteredEnvironment filtered_;
     std::shared_ptr<const Environment> diffused_;  ///< that filtered_.diffuse was made for
     std::shared_ptr<const Environment> layered_;   ///< that filtered_.gaussians was made for
@@ -172,39 +146,45 @@ class FragmentInputs {
     std::shared_ptr<const Environment> look_up_of_;  ///< that mirror_look_up_ was made for
     std::array<std::optional<SmoothRuns>, 3> runs_;  ///< of map_, when they were asked for
     std::optional<SkyVisibility> sky_visibility_;
-    std::vector<glm::vec3> sky_;
+    struct SkyFrom {
+        std::shared_ptr<const Environment> environment;
+        int rays = 0;  ///< none: unoccluded
+    };
+    Made<SkyFrom, std::vector<glm::vec3>> sky_;  ///< at the fragments, on a white diffuser
     MirrorInputs mirror_;
 
-    /// Light that parts send to one another: what it was made of, and from one step to the next.
-    struct Exchanged {
-        std::shared_ptr<const NodeExchange> nodes;
+    /// Light that parts send to one another, from one step to the next.
+    std::shared_ptr<const NodeExchange> nodes_;
+    struct DirectFrom {
         std::vector<DirectionalLight> lights;
         std::shared_ptr<const Environment> environment;
-        DirectLight direct;           ///< at the nodes; empty: not solved
-        std::vector<bool> lobes;      ///< parts that it was solved for by ray
-        NodeReflectance reflectance;  ///< of paints and artwork
+        std::vector<bool> lobes;  ///< parts that it is solved for by ray
+        bool operator==(const DirectFrom&) const = default;
+    };
+    Made<DirectFrom, DirectLight> direct_;  ///< at the nodes
+    struct PaintsFrom {
         std::vector<Material> paints;
         std::vector<PartArtwork> artwork;
-        int bounces = 0;
-        ExchangedLight at_nodes;             ///< empty: none
-        std::vector<glm::vec3> on_diffuser;  ///< at the fragments
-        int version = 0;                     ///< of both
+        bool operator==(const PaintsFrom& other) const;
     };
-    Exchanged exchanged_;
-    int arriving_version_ = 0;  ///< of lights_ and sky_
+    Made<PaintsFrom, NodeReflectance> reflectance_;
+    struct ExchangeFrom {
+        int direct = 0, reflectance = 0;  ///< their versions
+        int bounces = 0;
+    };
+    struct Exchanged {
+        ExchangedLight at_nodes;
+        std::vector<glm::vec3> on_diffuser;  ///< at the fragments
+    };
+    Made<ExchangeFrom, Exchanged> exchanged_;
     SubsurfaceInputs subsurface_;
 
-    /// What sky_ was made of. No rays: unoccluded.
-    struct Made {
-        std::shared_ptr<const Environment> of;
-        int rays = 0;
-    };
-    Made sky_made_;
-    std::optional<glm::dvec3> eye_;  ///< that shading_.eye is for
-    /// Sticky, so that a stop between two passes loses nothing.
-    bool directions_stale_ = true, sky_stale_ = true, diffuse_light_stale_ = true,
-         places_stale_ = true;
-    Changed changed_;
+    // What is on the device, by the versions of what it was made from
+    using Versions = std::array<int, 4>;
+    std::optional<std::pair<int, glm::dvec3>> eye_on_device_;  ///< map, eye
+    std::optional<Versions> lights_on_device_, sky_on_device_, diffuse_on_device_,
+        places_on_device_;
+    int glossy_version_ = 0, diffuse_version_ = 0;
     ShadingInputs shading_;
     std::vector<float> packed_;  ///< what is handed over next, kept for the one after
     int layers_made_ = 0;

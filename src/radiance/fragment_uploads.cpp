@@ -28,38 +28,49 @@ glm::vec3 radiance_working(const DirectionalLight& light) {
 
 }  // namespace
 
-FragmentInputs::Changed FragmentInputs::upload(const Scene& scene, StageClock& clock) {
+void FragmentInputs::upload(const Scene& scene, StageClock& clock) {
     if (mirror_.has_uploads()) {
         clock.add(PassKind::mirrored_environment, [&] {
             const MirrorInputs::Uploaded done = mirror_.upload(device_, light_precision_, shading_);
-            if (done.other_light) changed_.glossy = true;
+            if (done.other_light) ++glossy_version_;
             if (done.more_room) ++layers_made_;
         });
     }
-    const bool other_eye = eye_ != scene.eye_in_world_mm;
-    clock.run(PassKind::directions, directions_stale_ || other_eye, [&] {
-        if (other_eye) upload_eye(scene);
-        if (directions_stale_) upload_lights();
-        eye_ = scene.eye_in_world_mm;
-        directions_stale_ = false;
-        changed_.glossy = true;
+    const std::pair eye{map_version_, scene.eye_in_world_mm};
+    const Versions lights{lights_version_};
+    clock.run(PassKind::directions, eye_on_device_ != eye || lights_on_device_ != lights, [&] {
+        if (eye_on_device_ != eye) upload_eye(scene);
+        eye_on_device_ = eye;
+        if (lights_on_device_ != lights) upload_lights();
+        lights_on_device_ = lights;
+        ++glossy_version_;
     });
-    if (sky_stale_) {
+    // Where nothing spreads in a medium, no lamp is in it
+    const Versions sky{sky_.version,
+                       exchanged_.version,
+                       subsurface_.version(),
+                       subsurface_.empty() ? 0 : lights_version_};
+    if (sky_on_device_ != sky) {
         upload_sky();
-        sky_stale_ = false;
-        changed_.glossy = true;
+        sky_on_device_ = sky;
+        ++glossy_version_;
     }
-    clock.run(PassKind::diffuse_light, diffuse_light_stale_, [&] {
+    const Versions diffuse{lights_version_, sky_.version, exchanged_.version};
+    clock.run(PassKind::diffuse_light, diffuse_on_device_ != diffuse, [&] {
         upload_diffuse_light();
-        diffuse_light_stale_ = false;
-        changed_.diffuse = true;
+        diffuse_on_device_ = diffuse;
+        ++diffuse_version_;
     });
-    clock.run(PassKind::glint_places, places_stale_, [&] {
+    const Versions places{map_version_};
+    clock.run(PassKind::glint_places, places_on_device_ != places, [&] {
         upload_places();
-        places_stale_ = false;
+        places_on_device_ = places;
     });
     shading_.product_scale = scene.product->product_scale;
-    return std::exchange(changed_, {});
+}
+
+int FragmentInputs::version_for(const Material& material) const {
+    return model_info(material.model).same_from_all_sides ? diffuse_version_ : glossy_version_;
 }
 
 template <typename Value>
@@ -98,15 +109,13 @@ void FragmentInputs::upload_lights() {
 }
 
 void FragmentInputs::upload_sky() {
-    const std::vector<glm::vec3>& between = exchanged_.on_diffuser;
-    if (sky_.empty() && between.empty() && subsurface_.empty()) {
+    if (!sky_.from && !exchanged_.from && subsurface_.empty()) {
         shading_.sky = InputLayers();
         return;
     }
     make(shading_.sky, 0, light_precision_);
     const auto light_on = [&](std::size_t i) {
-        glm::vec3 sum = (sky_.empty() ? glm::vec3(0.0f) : sky_[i]) +
-                        (between.empty() ? glm::vec3(0.0f) : between[i]);
+        glm::vec3 sum = surrounding_light(i);
         if (!subsurface_.empty()) {
             // Of a translucent part: what leaves it
             const std::size_t part = map_->fragments[i].part;
@@ -124,14 +133,17 @@ void FragmentInputs::upload_sky() {
     upload_packed(shading_.sky, 0, light_on);
 }
 
+glm::vec3 FragmentInputs::surrounding_light(std::size_t fragment) const {
+    const std::vector<glm::vec3>& between = exchanged_.value.on_diffuser;
+    return (sky_.from ? sky_.value[fragment] : glm::vec3(0.0f)) +
+           (between.empty() ? glm::vec3(0.0f) : between[fragment]);
+}
+
 glm::vec3 FragmentInputs::entering_at(std::size_t fragment,
                                       const EnteredMedium& medium,
                                       float share,
                                       float curvature_per_mm) const {
-    const std::vector<glm::vec3>& between = exchanged_.on_diffuser;
-    glm::vec3 sum = (sky_.empty() ? glm::vec3(0.0f) : sky_[fragment]) +
-                    (between.empty() ? glm::vec3(0.0f) : between[fragment]);
-    sum *= share;
+    glm::vec3 sum = share * surrounding_light(fragment);
     for (const Light& light : lights_) {
         const float cosine =
             glm::dot(map_->fragments[fragment].normal, light.at[fragment].direction);
@@ -147,9 +159,7 @@ glm::vec3 FragmentInputs::entering_at(std::size_t fragment,
 void FragmentInputs::upload_diffuse_light() {
     make(shading_.lit, 0, light_precision_);
     const auto light_on = [&](std::size_t i) {
-        glm::vec3 sum = sky_.empty() ? glm::vec3(0.0f) : sky_[i];
-        const std::vector<glm::vec3>& between = exchanged_.on_diffuser;
-        if (!between.empty()) sum += between[i];
+        glm::vec3 sum = surrounding_light(i);
         for (const Light& light : lights_) {
             const float cosine = glm::dot(map_->fragments[i].normal, light.at[i].direction);
             sum +=

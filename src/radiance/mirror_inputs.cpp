@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "core/parallel.h"
-#include "radiance/packed_fragments.h"
 #include "radiance/light/mirrored_environment.h"
+#include "radiance/packed_fragments.h"
 
 namespace livery {
 namespace {

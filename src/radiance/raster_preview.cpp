@@ -21,8 +21,8 @@
 #include "gl/program.h"
 #include "gl/read_back.h"
 #include "radiance/glints.h"
-#include "radiance/packed_fragments.h"
 #include "radiance/light/environment_filter.h"
+#include "radiance/packed_fragments.h"
 #include "radiance/shading.h"
 #include "scene/artwork_cover.h"
 #include "scene/scene.h"
@@ -439,13 +439,13 @@ Program& RasterPreview::State::ready(const Scene& scene,
     const auto count = static_cast<int>(lights.size());
     const PartArtwork* relief = relief_of(scene, part);
     const bool glints = count > 0 && has_glints(material);
-    Program& program =
-        shading_program({material.model,
-                         count,
-                         light->environment ? Surroundings::mirrored : Surroundings::none,
-                         over,
-                         relief != nullptr,
-                         glints});
+    Program& program = shading_program(
+        {.model = material.model,
+         .lights = count,
+         .surroundings = light->environment ? Surroundings::mirrored : Surroundings::none,
+         .over = over,
+         .relief = relief != nullptr,
+         .glints = glints});
     set_paint(program, material, scene.exposure_ev, MirrorMixing::cubic, measured);
     set_view(program);
     program.set("u_eye_mm", glm::vec3(scene.eye_in_world_mm));

@@ -20,9 +20,8 @@
 #include "radiance/fragment_inputs.h"
 #include "radiance/lanes/processor_shading.h"
 #include "radiance/packed_fragments.h"
-#include "radiance/resolve.h"
 #include "radiance/shading.h"
-#include "radiance/work_items.h"
+#include "radiance/stages.h"
 
 namespace livery {
 
@@ -78,24 +77,18 @@ struct Shaded {
     Material material;
     std::vector<Material> artwork;
     double exposure_ev = 0.0;
-};
+    int light = 0, cover = 0;  ///< versions of what they read and of how artwork lies
 
-Shaded wanted_of(const Scene& scene, std::size_t part) {
-    Shaded wanted{scene.part_materials[part], {}, scene.exposure_ev};
-    for (const PartArtwork& artwork : scene.artwork) {
-        if (artwork.part == part) wanted.artwork.push_back(artwork.material);
+    bool operator==(const Shaded& other) const {
+        return exposure_ev == other.exposure_ev && light == other.light && cover == other.cover &&
+               same_reflectance(material, other.material) &&
+               std::equal(artwork.begin(),
+                          artwork.end(),
+                          other.artwork.begin(),
+                          other.artwork.end(),
+                          same_reflectance);
     }
-    return wanted;
-}
-
-bool same(const Shaded& a, const Shaded& b) {
-    return a.exposure_ev == b.exposure_ev && same_reflectance(a.material, b.material) &&
-           std::equal(a.artwork.begin(),
-                      a.artwork.end(),
-                      b.artwork.begin(),
-                      b.artwork.end(),
-                      same_reflectance);
-}
+};
 
 /// Adds to `sum` what is asked of OpenGL while it lives.
 class CountGl {
@@ -109,8 +102,6 @@ class CountGl {
     GlCounters& sum_;
     const GlCounters before_;
 };
-
-bool is_plain(const Material& material) { return model_info(material.model).same_from_all_sides; }
 
 }  // namespace
 
@@ -150,12 +141,7 @@ struct RadianceRenderer::State {
           device(its_device),
           picture_format(halves == StoredHalves::all ? TexelFormat::rgba16f : TexelFormat::rgba32f),
           layout(layout_of(map)),
-          inputs(geometry->product->mesh,
-                 *geometry->tracer,
-                 geometry->exchange,
-                 geometry->transports,
-                 geometry->view,
-                 map,
+          inputs(*geometry,
                  layout,
                  device,
                  keep_better,
@@ -176,7 +162,7 @@ struct RadianceRenderer::State {
     std::shared_ptr<ImageF> blank_picture();
     /// Shades the parts that need it; their timers are read when all is drawn.
     void shade(const Scene& scene, FramePlan& plan);
-    void upload(const Scene& scene, StageClock& clock);
+    Shaded wanted_of(const Scene& scene, std::size_t part) const;
     template <typename OnProcessor, typename InOpenGl>
     void time_shading(PlannedPass& pass,
                       std::size_t fragments,
@@ -247,22 +233,16 @@ std::shared_ptr<ImageF> RadianceRenderer::State::blank_picture() {
     return blank;
 }
 
-/// What is shaded in another light now does not stand.
-void RadianceRenderer::State::upload(const Scene& scene, StageClock& clock) {
-    const FragmentInputs::Changed changed = inputs.upload(scene, clock);
-    artwork.upload();
-    const std::vector<bool> covered = artwork.take_changed_parts();
-    for (std::size_t p = 0; p < parts.size(); ++p) {
-        if (!parts[p]) continue;
-        const auto stale = [&](const Material& material) {
-            return is_plain(material) ? changed.diffuse : changed.glossy;
-        };
-        const std::vector<Material>& over = parts[p]->artwork;
-        if (covered[p] || stale(parts[p]->material) ||
-            std::any_of(over.begin(), over.end(), stale)) {
-            parts[p].reset();
-        }
+Shaded RadianceRenderer::State::wanted_of(const Scene& scene, std::size_t part) const {
+    Shaded wanted{scene.part_materials[part], {}, scene.exposure_ev};
+    wanted.light = inputs.version_for(wanted.material);
+    wanted.cover = artwork.version(part);
+    for (const PartArtwork& over : scene.artwork) {
+        if (over.part != part) continue;
+        wanted.artwork.push_back(over.material);
+        wanted.light += inputs.version_for(over.material);
     }
+    return wanted;
 }
 
 void RadianceRenderer::State::shade(const Scene& scene, FramePlan& plan) {
@@ -274,7 +254,7 @@ void RadianceRenderer::State::shade(const Scene& scene, FramePlan& plan) {
     }
     for (std::size_t p = 0; p < parts.size(); ++p) {
         Shaded wanted = wanted_of(scene, p);
-        if (parts[p] && same(*parts[p], wanted)) continue;
+        if (parts[p] == wanted) continue;
         parts[p] = std::move(wanted);
         if (layout.fragments(p) == 0) continue;
         shade_part(plan, scene, p);
@@ -402,7 +382,8 @@ void RadianceRenderer::prepare(const Scene& whole,
     StageClock clock(plan, &progress);
     const Progress silent{{}, progress.stop};
     s.solve(scene, plan, clock, silent, exchanged);
-    s.upload(scene, clock);
+    s.inputs.upload(scene, clock);
+    s.artwork.upload();
     if (s.device == ShadingDevice::processor) return;
     for (const Material& material : scene.part_materials) {
         progress.check_stop();
@@ -426,7 +407,8 @@ void RadianceRenderer::render(const Scene& whole,
     s.solve(scene, plan, clock, progress, exchanged);
     count_work(scene, plan);
     const int before = clock.passes_run();
-    s.upload(scene, clock);
+    s.inputs.upload(scene, clock);
+    s.artwork.upload();
     s.counters.passes_run += clock.passes_run() - before;
     s.running.clear();
     s.shade(scene, plan);

@@ -301,17 +301,15 @@ ShadingKey ShadingPrograms::key_of(const Material& material,
                                    const ShadingInputs& inputs,
                                    bool over) {
     const ModelInfo& model = model_info(material.model);
-    if (model.same_from_all_sides)
-        return {material.model, 0, Surroundings::none, over, false, false};
-    const bool lights = !inputs.light_irradiance.empty();
-    return {material.model,
-            static_cast<int>(inputs.light_irradiance.size()),
-            !inputs.sky                        ? Surroundings::none
-            : model.mirrors() && inputs.mirror ? Surroundings::mirrored
-                                               : Surroundings::diffuse,
-            over,
-            false,
-            lights && has_glints(material)};
+    ShadingKey key{.model = material.model, .over = over};
+    if (model.same_from_all_sides) return key;
+    key.lights = static_cast<int>(inputs.light_irradiance.size());
+    key.glints = key.lights > 0 && has_glints(material);
+    if (inputs.sky) {
+        key.surroundings =
+            model.mirrors() && inputs.mirror ? Surroundings::mirrored : Surroundings::diffuse;
+    }
+    return key;
 }
 
 void ShadingPrograms::compile(const Material& material, const ShadingInputs& inputs, bool over) {
@@ -332,7 +330,6 @@ Program& ShadingPrograms::ready(const Material& material,
                                 double exposure_ev,
                                 bool over) {
     const ShadingKey key = key_of(material, inputs, over);
-    const int lights = std::get<1>(key);
     Program& program = program_for(key);
     drawn_.insert(key);
     set_paint(program, material, exposure_ev, inputs.mirror_mixing, measured_);
@@ -343,23 +340,22 @@ Program& ShadingPrograms::ready(const Material& material,
         program.set("u_eye", 0);
         inputs.eye.texture().bind(0);
     }
-    if (lights > 0) {
+    if (key.lights > 0) {
         program.set("u_lights", 1);
         inputs.lights.texture().bind(1);
         program.set("u_light_radiance", std::span<const glm::vec3>(inputs.light_irradiance));
         program.set("u_light_radius2", std::span<const float>(inputs.light_radius2));
     }
-    if (std::get<5>(key)) {
+    if (key.glints) {
         program.set("u_places", 4);
         inputs.places.texture().bind(4);
         program.set("u_glint_density",
                     static_cast<float>(glint_density_on_mock_up(material, inputs.product_scale)));
     }
-    const Surroundings surroundings = std::get<2>(key);
-    if (surroundings != Surroundings::none) {
+    if (key.surroundings != Surroundings::none) {
         program.set("u_sky", 2);
         inputs.sky.texture().bind(2);
-        if (surroundings == Surroundings::mirrored) {
+        if (key.surroundings == Surroundings::mirrored) {
             program.set("u_mirror", 3);
             program.set("u_mirror_unit", inputs.mirror_unit);
             program.set("u_mirror_place", inputs.mirror.places());

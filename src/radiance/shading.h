@@ -1,12 +1,13 @@
-// The grids of measured paints as textures, each uploaded once for as long as its paint lives.
+// The shading programs, one for each combination that a scene uses, and what they read; the grids
+// of measured paints as textures.
 #pragma once
 
 #include <array>
+#include <compare>
 #include <map>
 #include <memory>
 #include <set>
 #include <span>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -61,9 +62,16 @@ enum class ShadingSource {
 };
 /// Light from all around: on diffusers alone, or mirrored as well.
 enum class Surroundings { none, diffuse, mirrored };
-/// Model, lights, light from all around, whether it lies over another paint (an artwork's), whether
-/// the part has a relief (ShadingSource::raster), glints.
-using ShadingKey = std::tuple<ReflectanceModel, int, Surroundings, bool, bool, bool>;
+/// What a program is made for.
+struct ShadingKey {
+    ReflectanceModel model = ReflectanceModel::lambert;
+    int lights = 0;
+    Surroundings surroundings = Surroundings::none;
+    bool over = false;    ///< over another paint: an artwork's
+    bool relief = false;  ///< the part has one; ShadingSource::raster
+    bool glints = false;
+    auto operator<=>(const ShadingKey&) const = default;
+};
 
 /// Texels in a row of the textures that hold a mesh's arrays for ShadingSource::raster.
 inline constexpr int kMeshRow = 2048;

@@ -58,7 +58,8 @@ void FragmentNeighbours::around(std::size_t fragment, std::vector<Neighbour>& fo
     const int x0 = static_cast<int>(own.pixel) % map_.width;
     const int y0 = static_cast<int>(own.pixel) / map_.width;
     for (int y = std::max(y0 - kReach_px, 0); y <= std::min(y0 + kReach_px, map_.height - 1); ++y) {
-        for (int x = std::max(x0 - kReach_px, 0); x <= std::min(x0 + kReach_px, map_.width - 1); ++x) {
+        for (int x = std::max(x0 - kReach_px, 0); x <= std::min(x0 + kReach_px, map_.width - 1);
+             ++x) {
             const auto pixel = static_cast<std::size_t>(y * map_.width + x);
             const auto weight = static_cast<float>((kReach_px + 1 - std::abs(x - x0)) *
                                                    (kReach_px + 1 - std::abs(y - y0)));

@@ -1,4 +1,5 @@
-// What the samples of one pixel say: their mean, and how far it may be off.
+// (1') the same scene in and image out as radiance/, ground truth: an Embree path tracer, and what
+// the samples of one pixel say.
 #pragma once
 
 #include <array>

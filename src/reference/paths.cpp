@@ -16,7 +16,7 @@
 #include "core/error.h"
 #include "core/mutation.h"
 #include "reference/subsurface_walk.h"
-#include "scene/artwork_relief.h"
+#include "scene/artwork_cover.h"
 #include "tracing/closed_part.h"
 
 namespace livery {

@@ -1,17 +1,70 @@
 #include "scene/effects.h"
 
 #include <algorithm>
+#include <array>
+#include <map>
+#include <mutex>
 #include <sstream>
 #include <stdexcept>
 
 #include <fmt/format.h>
 
 #include "appearance/model_table.h"
+#include "appearance/subsurface/subsurface_profile.h"
 #include "appearance/subsurface/translucent_paint.h"
 #include "core/error.h"
-#include "scene/subsurface_reach.h"
 
 namespace livery {
+
+namespace {
+
+constexpr double kShare = 0.9;
+
+/// In mean free paths: all that a half space's profile depends on is its albedo, g and index.
+double reach_in_paths(const ScatteringMedium& medium) {
+    const std::array<double, 3> key{medium.albedo_prime(), medium.g, medium.eta};
+    static std::mutex mutex;
+    static std::map<std::array<double, 3>, double> known;
+    const std::lock_guard lock(mutex);
+    if (const auto found = known.find(key); found != known.end()) return found->second;
+    constexpr std::size_t kMost = 4096;
+    if (known.size() >= kMost) known.clear();
+    const SubsurfaceProfile profile =
+        subsurface_profile(SubsurfaceModel::scaled_beam_diffusion, medium);
+    return known[key] = energy_radius_mm(profile, medium, kShare) / medium.mean_free_path_mm();
+}
+
+}  // namespace
+
+double subsurface_reach_mm(const Material& paint, double product_scale) {
+    if (!is_translucent(paint)) return 0.0;
+    const glm::dvec3 albedo = entering_albedo(*paint.medium);
+    double reach = 0.0;
+    for (int c = 0; c < 3; ++c) {
+        if (albedo[c] < kUnseenAlbedo) continue;
+        ScatteringMedium medium = medium_of(*paint.medium, c);
+        medium.thickness_mm.reset();
+        reach = std::max(reach, reach_in_paths(medium) * medium.mean_free_path_mm());
+    }
+    return reach / product_scale;
+}
+
+bool light_spreads(const Material& paint, double product_scale) {
+    return subsurface_reach_mm(paint, product_scale) > kUnseenReach_mm;
+}
+
+std::optional<std::size_t> spreading_part(const Scene& scene) {
+    std::optional<std::size_t> farthest;
+    double reach = kUnseenReach_mm;
+    for (std::size_t p = 0; p < scene.part_materials.size(); ++p) {
+        const double own =
+            subsurface_reach_mm(scene.part_materials[p], scene.product->product_scale);
+        if (own <= reach) continue;
+        farthest = p;
+        reach = own;
+    }
+    return farthest;
+}
 
 namespace {
 
@@ -28,73 +81,116 @@ bool has_environment(const Scene& scene) {
            scene.environment->scale != 0.0;
 }
 
-bool mirrors(const Material& material) { return model_info(material.model).mirrors(); }
+bool has_light(const Scene& scene) { return is_lit(scene) || has_environment(scene); }
+
+bool mirrors_light(const Scene& scene) {
+    return has_light(scene) && any_paint(scene, [](const Material& material) {
+               return model_info(material.model).mirrors();
+           });
+}
+
+bool always(const Scene&) { return true; }
+
+bool glints_in_light(const Scene& scene) { return is_lit(scene) && any_paint(scene, has_glints); }
+
+bool wears_film(const Scene& scene) { return any_paint(scene, has_film); }
+
+bool has_relief(const Scene& scene) { return !scene.relief.empty(); }
+
+bool light_spreads_in_parts(const Scene& scene) {
+    return has_light(scene) && spreading_part(scene).has_value();
+}
 
 }  // namespace
 
 const std::vector<EffectInfo>& effect_table() {
     static const std::vector<EffectInfo> table{
-        {Effect::sub_samples,
-         "sub-samples",
-         "what a projector pixel covers",
-         {{"4", "edges and bends by 4 rays a pixel"},
-          {"16", "edges and bends by 16 rays a pixel"},
-          {"64", "edges and bends by 64 rays a pixel"}}},
-        {Effect::shadows,
-         "shadows",
-         "parts hide lights from one another",
-         {{"none", "lights shine through parts"},
-          {"sharp", "one ray a fragment: shadows without a penumbra"},
-          {"16 rays", "soft shadows by 16 rays a fragment"},
-          {"64 rays", "soft shadows by 64 rays a fragment"}}},
-        {Effect::environment,
-         "environment",
-         "light from all around",
-         {{"none", "lamps alone"}, {"filtered", "the environment, filtered for each lobe"}}},
-        {Effect::occlusion,
-         "occlusion",
-         "parts hide the environment from one another",
-         {{"none", "the environment reaches every point"},
-          {"joints", "8 directions at edges and in joints"},
-          {"16 rays", "16 directions, 128 where little of the sky is left"},
-          {"64 rays", "64 directions, 256 where little of the sky is left"}}},
-        {Effect::mirrored_environment,
-         "mirrored-environment",
-         "what glossy parts mirror of the environment",
-         {{"look-up", "the environment blurred for each lobe, looked up once"},
-          {"56 nodes", "14 rings of 4 nodes, one normal a pixel"},
-          {"320 nodes", "20 rings of 16 nodes around four normals a pixel"},
-          {"744 nodes", "31 rings of 24 nodes around four normals a pixel"}}},
-        {Effect::reflected_occlusion,
-         "reflected-occlusion",
-         "parts hide the environment that others mirror",
-         {{"none", "the environment is mirrored through parts"},
-          {"rays", "an eighth of the nodes' rays a fragment"}}},
-        {Effect::interreflection,
-         "interreflection",
-         "parts light one another",
-         {{"none", "parts send no light to one another"},
-          {"one bounce", "light that one part sent to the next, at the vertices"},
-          {"all bounces", "light that parts send to and fro, at the vertices"}}},
-        {Effect::glints,
-         "glints",
-         "single flakes",
-         {{"none", "flakes as a smooth lobe"}, {"counted", "flakes counted in each pixel"}}},
-        {Effect::film,
-         "film",
-         "thin films on flakes",
-         {{"none", "flakes without their film"}, {"interference", "the colours of thin films"}}},
-        {Effect::relief,
-         "relief",
-         "pictures of normals",
-         {{"none", "the surface as the mesh has it"},
-          {"tilted", "fragments tilted by the relief"}}},
-        {Effect::subsurface,
-         "subsurface",
-         "light goes through translucent parts",
-         {{"none", "light leaves translucent parts where it entered"},
-          {"gather", "light leaves around where it entered, from coarse nodes"},
-          {"transport", "the same from fine nodes, where no air lies between"}}},
+        {.effect = Effect::sub_samples,
+         .name = "sub-samples",
+         .in_words = "what a projector pixel covers",
+         .levels = {{"4", "edges and bends by 4 rays a pixel"},
+                    {"16", "edges and bends by 16 rays a pixel"},
+                    {"64", "edges and bends by 64 rays a pixel"}},
+         .at = {.draft = 0, .normal = 1, .high = 1},
+         .called_for = always},
+        {.effect = Effect::shadows,
+         .name = "shadows",
+         .in_words = "parts hide lights from one another",
+         .levels = {{"none", "lights shine through parts"},
+                    {"sharp", "one ray a fragment: shadows without a penumbra"},
+                    {"16 rays", "soft shadows by 16 rays a fragment"},
+                    {"64 rays", "soft shadows by 64 rays a fragment"}},
+         .at = {.draft = 1, .normal = 2, .high = 3},
+         .called_for = is_lit},
+        {.effect = Effect::environment,
+         .name = "environment",
+         .in_words = "light from all around",
+         .levels = {{"none", "lamps alone"},
+                    {"filtered", "the environment, filtered for each lobe"}},
+         .at = {.draft = 1, .normal = 1, .high = 1},
+         .called_for = has_environment},
+        {.effect = Effect::occlusion,
+         .name = "occlusion",
+         .in_words = "parts hide the environment from one another",
+         .levels = {{"none", "the environment reaches every point"},
+                    {"joints", "8 directions at edges and in joints"},
+                    {"16 rays", "16 directions, 128 where little of the sky is left"},
+                    {"64 rays", "64 directions, 256 where little of the sky is left"}},
+         .at = {.draft = 1, .normal = 2, .high = 3},
+         .called_for = has_environment},
+        {.effect = Effect::mirrored_environment,
+         .name = "mirrored-environment",
+         .in_words = "what glossy parts mirror of the environment",
+         .levels = {{"look-up", "the environment blurred for each lobe, looked up once"},
+                    {"56 nodes", "14 rings of 4 nodes, one normal a pixel"},
+                    {"320 nodes", "20 rings of 16 nodes around four normals a pixel"},
+                    {"744 nodes", "31 rings of 24 nodes around four normals a pixel"}},
+         .at = {.draft = 0, .normal = 2, .high = 3},
+         .called_for = mirrors_light},
+        {.effect = Effect::reflected_occlusion,
+         .name = "reflected-occlusion",
+         .in_words = "parts hide the environment that others mirror",
+         .levels = {{"none", "the environment is mirrored through parts"},
+                    {"rays", "an eighth of the nodes' rays a fragment"}},
+         .at = {.draft = 0, .normal = 1, .high = 1},
+         .called_for = mirrors_light},
+        {.effect = Effect::interreflection,
+         .name = "interreflection",
+         .in_words = "parts light one another",
+         .levels = {{"none", "parts send no light to one another"},
+                    {"one bounce", "light that one part sent to the next, at the vertices"},
+                    {"all bounces", "light that parts send to and fro, at the vertices"}},
+         .at = {.draft = 0, .normal = 1, .high = 1},
+         .called_for = has_light},
+        {.effect = Effect::glints,
+         .name = "glints",
+         .in_words = "single flakes",
+         .levels = {{"none", "flakes as a smooth lobe"},
+                    {"counted", "flakes counted in each pixel"}},
+         .at = {.draft = 1, .normal = 1, .high = 1},
+         .called_for = glints_in_light},
+        {.effect = Effect::film,
+         .name = "film",
+         .in_words = "thin films on flakes",
+         .levels = {{"none", "flakes without their film"},
+                    {"interference", "the colours of thin films"}},
+         .at = {.draft = 1, .normal = 1, .high = 1},
+         .called_for = wears_film},
+        {.effect = Effect::relief,
+         .name = "relief",
+         .in_words = "pictures of normals",
+         .levels = {{"none", "the surface as the mesh has it"},
+                    {"tilted", "fragments tilted by the relief"}},
+         .at = {.draft = 1, .normal = 1, .high = 1},
+         .called_for = has_relief},
+        {.effect = Effect::subsurface,
+         .name = "subsurface",
+         .in_words = "light goes through translucent parts",
+         .levels = {{"none", "light leaves translucent parts where it entered"},
+                    {"gather", "light leaves around where it entered, from coarse nodes"},
+                    {"transport", "the same from fine nodes, where no air lies between"}},
+         .at = {.draft = 0, .normal = 1, .high = 2},
+         .called_for = light_spreads_in_parts},
     };
     return table;
 }
@@ -127,17 +223,14 @@ std::string to_string(Quality quality) {
 }
 
 EffectLevels levels_of(Quality quality) {
-    switch (quality) {
-        case Quality::draft:
-            return {{0, 1, 1, 1, 0, 0, 0, 1, 1, 1, 0}};
-        case Quality::normal:
-            return {{1, 2, 1, 2, 2, 1, 1, 1, 1, 1, 1}};
-        case Quality::high:
-            return {{1, 3, 1, 3, 3, 1, 1, 1, 1, 1, 2}};
-        case Quality::reference:
-            break;
+    check_argument(quality != Quality::reference, "the reference level is the path tracer's");
+    EffectLevels levels;
+    for (const EffectInfo& info : effect_table()) {
+        levels[info.effect] = quality == Quality::draft    ? info.at.draft
+                              : quality == Quality::normal ? info.at.normal
+                                                           : info.at.high;
     }
-    throw std::invalid_argument("the reference level is the path tracer's");
+    return levels;
 }
 
 EffectLevels dearest_levels() {
@@ -209,31 +302,7 @@ std::string to_string(const EffectLevels& levels) {
     return text;
 }
 
-bool calls_for(const Scene& scene, Effect effect) {
-    switch (effect) {
-        case Effect::sub_samples:
-            return true;
-        case Effect::shadows:
-            return is_lit(scene);
-        case Effect::environment:
-        case Effect::occlusion:
-            return has_environment(scene);
-        case Effect::mirrored_environment:
-        case Effect::reflected_occlusion:
-            return (has_environment(scene) || is_lit(scene)) && any_paint(scene, mirrors);
-        case Effect::interreflection:
-            return is_lit(scene) || has_environment(scene);
-        case Effect::glints:
-            return is_lit(scene) && any_paint(scene, has_glints);
-        case Effect::film:
-            return any_paint(scene, has_film);
-        case Effect::relief:
-            return !scene.relief.empty();
-        case Effect::subsurface:
-            return (is_lit(scene) || has_environment(scene)) && spreading_part(scene).has_value();
-    }
-    throw std::invalid_argument(fmt::format("effect {}", static_cast<int>(effect)));
-}
+bool calls_for(const Scene& scene, Effect effect) { return effect_info(effect).called_for(scene); }
 
 Scene at_levels(const Scene& scene, const EffectLevels& levels) {
     Scene result = scene;

@@ -11,7 +11,6 @@
 
 #include "core/error.h"
 #include "core/parallel.h"
-#include "scene/triangle_pixels.h"
 
 namespace livery {
 

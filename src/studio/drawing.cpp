@@ -55,6 +55,9 @@ void take_setup(Studio& studio, std::shared_ptr<const ProjectorSetup> setup) {
 /// A new calibration, bench, design white or gamut mapping is loaded beside the frames, which go on
 /// as they were.
 void ask_for_setup(Studio& studio) {
+    std::pair read_off{studio.session.revision(), text_of_trial(studio)};
+    if (studio.asked_setup && studio.asked_setup_of == read_off) return;
+    studio.asked_setup_of = std::move(read_off);
     const Document document = shown_document(studio);
     const SetupKey key{document.calibration,
                        document.bench,
@@ -128,15 +131,14 @@ std::set<std::filesystem::path> unread_files(const Description& description) {
 /// With what all frames of the document share; its number.
 std::uint64_t show_frame(Studio& studio,
                          const Document& document,
-                         FrameDescription description,
+                         WantedFrame frame,
                          const std::string& tried) {
     const std::uint64_t number = ++studio.frame_number;
-    description.number = number;
-    description.setup = studio.setup;
-    description.library = document.library;
-    description.asked_at = studio.input_at;
+    frame.number = number;
+    frame.library = document.library;
+    frame.asked_at = studio.input_at;
     studio.trace->write("frame-asked", number, tried);
-    studio.frames->show(std::move(description));
+    studio.frames->show(std::move(frame));
     return number;
 }
 
@@ -179,17 +181,21 @@ void ask_for_frame(Studio& studio) {
     description.setup = studio.setup;
     description.quality = document.quality;
     description.levels = document.levels;
+    WantedFrame frame(std::move(description));
     if (asked) {
         studio.refinement.on = true;
-        description.fade_s = kRefinementFade_s;
+        frame.fade_s = kRefinementFade_s;
     } else {
-        begin_anew(studio, description);
+        begin_anew(studio, frame);
     }
     if (studio.refinement.on) {
-        if (const auto finer = refined_levels(document)) description.levels = finer;
-        description.refined = true;
+        if (const auto finer = refined_levels(document)) {
+            frame.levels = finer;
+            frame = WantedFrame(FrameDescription(std::move(frame)));
+        }
+        frame.refined = true;
     }
-    show_frame(studio, document, std::move(description), key.tried);
+    show_frame(studio, document, std::move(frame), key.tried);
 }
 
 void ask_for_preview(Studio& studio) {
@@ -426,6 +432,7 @@ std::optional<std::uint64_t> ask_for_look(Studio& studio, int look) {
         return std::nullopt;
     }
     studio.frame_asked_s = studio.now_s;
+    description.setup = studio.setup;
     description.quality = document.quality;
     description.levels = document.levels;
     return show_frame(studio, document, std::move(description), "");

@@ -66,7 +66,7 @@ std::optional<EffectLevels> refined_levels(const Document& document);
 
 /// A frame of something else is asked for: the finer levels stay for another paint in the same
 /// light, which is solved; everything else begins with the document's.
-void begin_anew(Studio& studio, const FrameDescription& described);
+void begin_anew(Studio& studio, const WantedFrame& frame);
 /// False when the finer levels are shown and no longer wanted.
 bool stands_refined(const Studio& studio);
 /// Whether the newest frame, all there and left alone for a while, is to be asked for once more.

@@ -46,9 +46,9 @@ std::optional<EffectLevels> refined_levels(const Document& document) {
     return finer == own ? std::nullopt : std::optional(finer);
 }
 
-void begin_anew(Studio& studio, const FrameDescription& described) {
+void begin_anew(Studio& studio, const WantedFrame& frame) {
     Refinement& refinement = studio.refinement;
-    SolveKeys light = keys_of(described);
+    SolveKeys light = frame.keys;
     // What paints send on is solved for each of them
     for (auto& side : light) {
         if (side) side->sends_on.clear();

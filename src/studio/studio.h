@@ -20,10 +20,10 @@
 #include "gl/window.h"
 #include "live/bench_thread.h"
 #include "live/capture_thread.h"
+#include "live/frame_description.h"
 #include "live/frame_thread.h"
 #include "live/orbit.h"
 #include "live/preview_thread.h"
-#include "live/solve_key.h"
 #include "mesh/mesh.h"
 #include "projection/projector_screen.h"
 #include "session/session.h"
@@ -205,6 +205,8 @@ struct Studio {
     std::optional<PreviewKey> asked_preview;
     PreviewLag preview_lag;
     std::optional<SetupKey> asked_setup;
+    /// The session's revision and the trial that it was read off.
+    std::pair<std::uint64_t, std::string> asked_setup_of;
     std::uint64_t frame_number = 0, preview_number = 0;
     Refinement refinement;
     std::shared_ptr<const FramePictures> photographed;  ///< the newest that the bench was to show

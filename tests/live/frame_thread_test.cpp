@@ -449,7 +449,9 @@ TEST_F(FrameThreadTest, AnotherRoughnessIsDrawnAtOnceAndThenAtTheQualityAskedFor
     ASSERT_TRUE(end);
     EXPECT_EQ(drive(*end).values, from_scratch(description_.scene).drive.values);
     // By then all others are solved: a listed pass
-    const PlannedPass* ahead = find_pass(end->plan, mirrored_ahead_pass());
+    FramePlan plan = end->plan;
+    say_why(end->scene, plan);
+    const PlannedPass* ahead = find_pass(plan, mirrored_ahead_pass());
     ASSERT_TRUE(ahead);
     EXPECT_NE(ahead->why, "");
     EXPECT_GT(*ahead->ms, 0.0);

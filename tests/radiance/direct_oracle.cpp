@@ -13,7 +13,7 @@
 #include "core/colour.h"
 #include "core/parallel.h"
 #include "core/random.h"
-#include "scene/artwork_relief.h"
+#include "scene/artwork_cover.h"
 #include "support/kept_truth.h"
 #include "tracing/tracer.h"
 

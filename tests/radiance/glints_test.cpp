@@ -400,6 +400,7 @@ TEST_P(RenderedGlints, CostNothingWhereThereAreNone) {
     Scene scene = scene_with(0.0);
     RadianceRenderer renderer = renderer_of(scene, view);
     FramePlan smooth = plan(scene);
+    say_why(scene, smooth);
     EXPECT_EQ(find_pass(smooth, PassKind::glint_places), nullptr);
     EXPECT_NE(find_pass(smooth, {PassKind::shade, "body", ReflectanceModel::car_paint}), nullptr);
     const auto skipped =

@@ -12,7 +12,7 @@
 #include "gl/read_back.h"
 #include "radiance/lanes/processor_shading.h"
 #include "radiance/renderer_fixture.h"
-#include "radiance/resolve.h"
+#include "radiance/packed_fragments.h"
 #include "support/gl_device.h"
 #include "support/shading_devices.h"
 

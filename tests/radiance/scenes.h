@@ -42,6 +42,7 @@ inline DirectionalLight light_from(glm::dvec3 direction, double angle_rad, doubl
 inline Scene scene_of(Mesh mesh, const Material& material) {
     auto product = std::make_shared<Product>();
     product->mesh = std::move(mesh);
+    product->exchange = part_exchange(product->mesh);
     Scene scene;
     scene.part_materials.assign(product->mesh.parts.size(), material);
     scene.product = std::move(product);

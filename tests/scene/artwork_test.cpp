@@ -10,7 +10,7 @@
 #include "core/image_io.h"
 #include "core/paths.h"
 #include "scene/artwork_picture.h"
-#include "scene/artwork_relief.h"
+#include "scene/artwork_cover.h"
 #include "scene/scene.h"
 #include "support/file_error.h"
 #include "support/temporary_folder.h"

@@ -8,7 +8,6 @@
 #include "appearance/parameter_table.h"
 #include "scene/frame_plan.h"
 #include "scene/grey_environment.h"
-#include "scene/subsurface_reach.h"
 
 namespace livery {
 namespace {
@@ -89,7 +88,8 @@ TEST(AtLevels, ThePlanSaysWhatIsLeftOut) {
     scene.environment = grey_environment();
     scene.lights.emplace_back();
     EffectLevels levels{};
-    const FramePlan plan = plan_frame(scene, levels, FrameStage::radiance);
+    FramePlan plan = plan_frame(scene, levels, FrameStage::radiance);
+    say_why(scene, plan);
     const auto why = [&](PassId id) -> std::string {
         for (const SkippedPass& pass : plan.skipped) {
             if (pass.id == id) return pass.why;
@@ -172,15 +172,20 @@ TEST(Interreflection, IsCalledForByWhatFacesEachOtherAndIsBright) {
     EXPECT_LT(*skipped(planned()).error_bound, 0.25);
     // Nor without light, nor on what is convex.
     scene.lights.clear();
-    EXPECT_EQ(skipped(planned()).why, "no part has light to send on");
+    const auto why = [&](const Scene& of) {
+        FramePlan plan = plan_frame(of, Quality::high, FrameStage::radiance);
+        say_why(of, plan);
+        return skipped(plan).why;
+    };
+    EXPECT_EQ(why(scene), "no part has light to send on");
     Scene ball = sphere_scene();
     ball.lights.emplace_back();
-    EXPECT_EQ(skipped(plan_frame(ball, Quality::high, FrameStage::radiance)).why,
-              "no part faces another, or itself");
+    EXPECT_EQ(why(ball), "no part faces another, or itself");
 }
 
 /// Why the plan lists the pass, or does not.
-std::string told(const FramePlan& plan, const PassId& id) {
+std::string told(const Scene& scene, FramePlan plan, const PassId& id) {
+    say_why(scene, plan);
     if (const PlannedPass* pass = find_pass(plan, id)) return "runs: " + pass->why;
     for (const SkippedPass& pass : plan.skipped) {
         if (pass.id == id) return "skipped: " + pass.why;
@@ -192,7 +197,7 @@ TEST(Subsurface, IsCalledForWhereLightGoesFarEnough) {
     Scene scene = sphere_scene();
     scene.lights.emplace_back();
     const auto at = [&](EffectLevels levels) {
-        return told(plan_frame(scene, levels, FrameStage::radiance), PassKind::subsurface);
+        return told(scene, plan_frame(scene, levels, FrameStage::radiance), PassKind::subsurface);
     };
     EffectLevels levels = levels_of(Quality::high);
     EXPECT_EQ(at(levels), "skipped: no part is translucent");
@@ -237,8 +242,9 @@ TEST(Subsurface, IsNotOfArtwork) {
     PartArtwork artwork;
     artwork.material = find_material("marble");
     scene.artwork = {artwork};
-    EXPECT_EQ(told(plan_frame(scene, Quality::high, FrameStage::radiance), PassKind::subsurface),
-              "skipped: no part is translucent");
+    EXPECT_EQ(
+        told(scene, plan_frame(scene, Quality::high, FrameStage::radiance), PassKind::subsurface),
+        "skipped: no part is translucent");
     EXPECT_EQ(at_levels(scene, levels_of(Quality::high)).artwork[0].material.model,
               ReflectanceModel::ggx);
 }

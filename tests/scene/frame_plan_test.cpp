@@ -37,6 +37,12 @@ std::set<std::string> passes(const FramePlan& plan) {
     return names;
 }
 
+FramePlan told_plan(const Scene& scene, Quality quality, FrameStage stage) {
+    FramePlan plan = plan_frame(scene, quality, stage);
+    say_why(scene, plan);
+    return plan;
+}
+
 std::string why(const FramePlan& plan, const std::string& name) {
     for (const PlannedPass& pass : plan.passes) {
         if (to_string(pass.id) == name) return pass.why;
@@ -48,7 +54,7 @@ std::string why(const FramePlan& plan, const std::string& name) {
 }
 
 TEST(FramePlan, DiffuseSceneWithoutLightNeedsFewKindsOfPass) {
-    const FramePlan plan = plan_frame(bare_scene(), Quality::high, FrameStage::radiance);
+    const FramePlan plan = told_plan(bare_scene(), Quality::high, FrameStage::radiance);
     EXPECT_EQ(passes(plan),
               (std::set<std::string>{"surface-map",
                                      "diffuse-light",
@@ -67,13 +73,13 @@ TEST(FramePlan, DiffuseSceneWithoutLightNeedsFewKindsOfPass) {
 TEST(FramePlan, LightsSayTheirNamesAndWidths) {
     Scene scene = bare_scene();
     scene.lights = {light(3.0 * 3.14159265358979 / 180.0), light(0.0), light(0.1, 0.0)};
-    const FramePlan plan = plan_frame(scene, Quality::normal, FrameStage::projector);
+    const FramePlan plan = told_plan(scene, Quality::normal, FrameStage::projector);
     EXPECT_EQ(why(plan, "key-visibility"), "the look has a key light 3° wide: soft shadows");
     EXPECT_EQ(why(plan, "fill-visibility"), "the look has a fill light, a point: sharp shadows");
     EXPECT_EQ(why(plan, "light-3-visibility"), "the light-3 light is black");
     EXPECT_EQ(find_pass(plan, visibility_pass(2)), nullptr);
     ASSERT_NE(find_pass(plan, PassKind::compensation), nullptr);
-    const FramePlan draft = plan_frame(scene, Quality::draft, FrameStage::radiance);
+    const FramePlan draft = told_plan(scene, Quality::draft, FrameStage::radiance);
     EXPECT_EQ(why(draft, "key-visibility"),
               "the look has a key light 3° wide; draft shows its shadows sharp");
 }
@@ -84,35 +90,35 @@ TEST(FramePlan, SaysWhetherFlakesGlintAndHowLargeTheyAreDrawn) {
     Material& paint = scene.part_materials[0];
     paint.name = "gold";
     paint.model = ReflectanceModel::car_paint;
-    FramePlan plan = plan_frame(scene, Quality::normal, FrameStage::radiance);
+    FramePlan plan = told_plan(scene, Quality::normal, FrameStage::radiance);
     EXPECT_EQ(why(plan, "glint-places"), "no paint of the scene has glints");
     paint.glint_density_per_mm2 = 1000.0;
     scene.lights = {light(0.1, 0.0)};
-    plan = plan_frame(scene, Quality::normal, FrameStage::radiance);
+    plan = told_plan(scene, Quality::normal, FrameStage::radiance);
     EXPECT_EQ(why(plan, "glint-places"), "flakes glint under lights; the look has none");
     EXPECT_EQ(why(plan, "shade:body:car-paint"), "gold is a car paint with flakes");
     scene.lights.push_back(light(0.1));
-    plan = plan_frame(scene, Quality::normal, FrameStage::radiance);
+    plan = told_plan(scene, Quality::normal, FrameStage::radiance);
     EXPECT_EQ(why(plan, "glint-places"),
               "how much of the product a pixel covers, and how many flakes: once for a pose");
     EXPECT_EQ(
         why(plan, "shade:body:car-paint+glints"),
         "gold is a car paint with flakes, which glint: 1000 on a square millimetre, physical");
     paint.glint_scale = 30.0;
-    plan = plan_frame(scene, Quality::normal, FrameStage::radiance);
+    plan = told_plan(scene, Quality::normal, FrameStage::radiance);
     EXPECT_EQ(why(plan, "shade:body:car-paint+glints"),
               "gold is a car paint with flakes, which glint: 1000 on a square millimetre, "
               "exaggerated 30 times");
     // Of another model they mean nothing.
     paint.model = ReflectanceModel::clearcoat;
-    plan = plan_frame(scene, Quality::normal, FrameStage::radiance);
+    plan = told_plan(scene, Quality::normal, FrameStage::radiance);
     EXPECT_EQ(why(plan, "glint-places"), "no paint of the scene has glints");
 }
 
 TEST(FramePlan, EnvironmentCallsOnlyForWhatThePaintsUse) {
     Scene scene = bare_scene();
     scene.environment = grey_environment();
-    FramePlan plan = plan_frame(scene, Quality::normal, FrameStage::radiance);
+    FramePlan plan = told_plan(scene, Quality::normal, FrameStage::radiance);
     EXPECT_TRUE(passes(plan).contains("environment-irradiance"));
     EXPECT_TRUE(passes(plan).contains("ambient-occlusion"));
     EXPECT_FALSE(passes(plan).contains("environment-filter"));
@@ -120,14 +126,14 @@ TEST(FramePlan, EnvironmentCallsOnlyForWhatThePaintsUse) {
 
     scene.part_materials[1].model = ReflectanceModel::clearcoat;
     scene.part_materials[1].name = "Garnet Red";
-    plan = plan_frame(scene, Quality::normal, FrameStage::radiance);
+    plan = told_plan(scene, Quality::normal, FrameStage::radiance);
     EXPECT_EQ(why(plan, "environment-filter"), "part wheels mirrors the environment");
     EXPECT_EQ(why(plan, "reflection-occlusion"), "part wheels may mirror other parts");
     EXPECT_EQ(why(plan, "directions"), "the gloss of part wheels depends on where the eye is");
     EXPECT_EQ(why(plan, "shade:wheels:clearcoat"), "Garnet Red is a paint under a clear coat");
     EXPECT_EQ(why(plan, "shade:*:ggx"), "no part uses GGX");
 
-    plan = plan_frame(scene, Quality::draft, FrameStage::radiance);
+    plan = told_plan(scene, Quality::draft, FrameStage::radiance);
     EXPECT_EQ(why(plan, "ambient-occlusion"),
               "joints are darker than what they join; draft looks at nothing else");
     EXPECT_EQ(find_pass(plan, PassKind::reflection_occlusion), nullptr);
@@ -136,7 +142,7 @@ TEST(FramePlan, EnvironmentCallsOnlyForWhatThePaintsUse) {
     Environment dark = *scene.environment;
     dark.scale = 0.0;
     scene.environment = std::make_shared<const Environment>(dark);
-    plan = plan_frame(scene, Quality::normal, FrameStage::radiance);
+    plan = told_plan(scene, Quality::normal, FrameStage::radiance);
     EXPECT_EQ(why(plan, "environment-irradiance"), "no environment in the look");
 }
 
@@ -151,7 +157,7 @@ TEST(FramePlan, EveryPassIsEitherPlannedOrSkippedNeverBoth) {
                     if (lit) scene.lights = {light(0.05)};
                     if (environment) scene.environment = grey_environment();
                     scene.part_materials[0].model = model;
-                    const FramePlan plan = plan_frame(scene, quality, FrameStage::projector);
+                    const FramePlan plan = told_plan(scene, quality, FrameStage::projector);
                     std::set<std::string> names = passes(plan);
                     EXPECT_EQ(names.size(), plan.passes.size()) << "a pass is listed twice";
                     for (const SkippedPass& pass : plan.skipped) {
@@ -167,7 +173,7 @@ TEST(FramePlan, EveryPassIsEitherPlannedOrSkippedNeverBoth) {
 }
 
 TEST(FramePlan, ReferenceIsThePathTracer) {
-    const FramePlan plan = plan_frame(bare_scene(), Quality::reference, FrameStage::radiance);
+    const FramePlan plan = told_plan(bare_scene(), Quality::reference, FrameStage::radiance);
     EXPECT_EQ(passes(plan), (std::set<std::string>{"path-tracer"}));
 }
 

@@ -1,4 +1,4 @@
-#include "scene/pass_id.h"
+#include "scene/frame_plan.h"
 
 #include <set>
 #include <stdexcept>

@@ -197,7 +197,8 @@ Command render_command() {
                 arguments->projects, arguments->projector, !arguments->frame.camera.empty(), frame);
         }
         if (frame.compensation) request.compensation = &*frame.compensation;
-        const RenderedFrame rendered = render_frame(request, progress);
+        RenderedFrame rendered = render_frame(request, progress);
+        say_why(request.scene, rendered.plan);
         write_frame(arguments->out, rendered, request.stage);
 
         const double covered = covered_fraction(rendered.radiance_working);
@@ -278,6 +279,7 @@ Command plan_command() {
             note = predict(plan, list);
             if (!frame_price) frame_price = priced(list, plan.levels);
         }
+        say_why(request.scene, plan);
         const PredictedTime time = predicted_time(plan);
         Outcome outcome;
         outcome.figures = json_of(plan);

@@ -7,7 +7,6 @@
 #include "core/image.h"
 #include "radiance/lanes/lane_functions.h"
 #include "radiance/packed_fragments.h"
-#include "radiance/resolve.h"
 #include "radiance/shading.h"
 
 namespace livery {

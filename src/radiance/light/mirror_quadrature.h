@@ -46,7 +46,7 @@ class MirrorQuadrature {
     /// multiple of kFacets nodes.
     static constexpr std::size_t kFacets = 4;
 
-    /// What is kept of a node, in the order of a row's lists (lanes/mirror_sums.h).
+    /// What is kept of a node, in the order of a row's lists (lanes/lane_functions.h).
     using Node = std::array<float, kRowLists>;
     /// What shade.glsl takes those weights to be on the mean over lobes of even light.
     struct Even {

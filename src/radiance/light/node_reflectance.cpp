@@ -8,6 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "appearance/paint_bsdf.h"
+#include "appearance/parameter_table.h"
 #include "core/parallel.h"
 #include "radiance/light/sphere_lookup.h"
 #include "scene/artwork_coats.h"

@@ -78,7 +78,7 @@ class SphereStack {
         }
     };
     Footprint at(const glm::vec2& uv) const;
-    /// For many look-ups at once (lanes/mirror_sums.h).
+    /// For many look-ups at once (lanes/lane_functions.h).
     SphereTexels texels() const;
 
   private:
@@ -93,7 +93,7 @@ class GaussianLayers {
   public:
     explicit GaussianLayers(const FilteredEnvironment& filtered);
 
-    /// For sums over many directions (lanes/mirror_sums.h).
+    /// For sums over many directions (lanes/lane_functions.h).
     GaussianTexels sharp() const { return sharp_.texels(); }
     GaussianTexels wide() const { return wide_.texels(); }
 

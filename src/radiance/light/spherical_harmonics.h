@@ -1,4 +1,5 @@
-// The discrete Fourier transform of rows that are a power of two long.
+// Pictures of the whole sphere as spherical harmonics: exact filtering with round kernels, by the
+// discrete Fourier transform of rows that are a power of two long.
 #pragma once
 
 #include <complex>

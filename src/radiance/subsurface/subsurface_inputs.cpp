@@ -204,9 +204,10 @@ void SubsurfaceInputs::solve(const Wanted& wanted,
     }
     parts_ = std::move(parts);
     solved_ = wanted;
+    ++version_;
 }
 
-bool SubsurfaceInputs::use_what_stands(const Wanted& wanted) {
+void SubsurfaceInputs::use_what_stands(const Wanted& wanted) {
     bool changed = parts_.size() != wanted.media.size();
     parts_.resize(wanted.media.size());
     const bool same_lit = solved_ && same_light(*solved_, wanted);
@@ -223,14 +224,13 @@ bool SubsurfaceInputs::use_what_stands(const Wanted& wanted) {
         // A later solve() has it to do
         if (solved_ && p < solved_->media.size()) solved_->media[p].reset();
     }
-    return changed;
+    if (changed) ++version_;
 }
 
-bool SubsurfaceInputs::clear() {
-    const bool any = !parts_.empty();
+void SubsurfaceInputs::clear() {
+    if (!parts_.empty()) ++version_;
     solved_.reset();
     parts_.clear();
-    return any;
 }
 
 }  // namespace livery

@@ -50,10 +50,10 @@ class SubsurfaceInputs {
                const std::vector<glm::vec3>& between,
                const Progress& progress);
     /// Without solving: a part whose medium and light are as solved keeps its solution; of the
-    /// others light leaves where it enters. Whether anything changed by that.
-    bool use_what_stands(const Wanted& wanted);
-    /// Forgets all; whether there was anything.
-    bool clear();
+    /// others light leaves where it enters.
+    void use_what_stands(const Wanted& wanted);
+    void clear();                             ///< forgets all
+    int version() const { return version_; }  ///< grows with each other solution
 
     struct Part {
         TranslucentMaterial medium;
@@ -80,6 +80,7 @@ class SubsurfaceInputs {
     std::optional<Wanted> solved_;
     std::vector<std::optional<KernelOf>> kernels_;
     std::vector<std::optional<Part>> parts_;
+    int version_ = 0;
 };
 
 }  // namespace livery

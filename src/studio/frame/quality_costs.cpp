@@ -317,6 +317,8 @@ void draw_plan_panel(Studio& studio) {
     show_last_measured(studio.panels.of<PlanPanelState>().measured, frame.plan);
     const PassCosts& costs = pass_costs(studio);
     predict_times(frame.plan, costs.passes);
+    if (frame.scene.product) say_why(frame.scene, frame.plan);
+    if (frame.wiped_to) say_why(*frame.wiped_to, frame.plan);
     draw_totals(studio, frame, costs);
     draw_passes(frame.plan,
                 CostKind::every_frame,

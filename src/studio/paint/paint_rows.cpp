@@ -14,7 +14,7 @@
 #include "appearance/model_table.h"
 #include "appearance/subsurface/translucent_paint.h"
 #include "core/error.h"
-#include "scene/subsurface_reach.h"
+#include "scene/effects.h"
 #include "studio/paint/paint_panel.h"
 #include "studio/users_library.h"
 

@@ -10,7 +10,7 @@
 #include <glm/matrix.hpp>
 
 #include "core/error.h"
-#include "scene/triangle_pixels.h"
+#include "scene/mockup_mask.h"
 
 namespace livery {
 

@@ -1,6 +1,7 @@
-#include "live/solve_key.h"
+#include "live/frame_description.h"
 
-#include <algorithm>
+#include <stdexcept>
+#include <utility>
 
 #include <glm/common.hpp>
 
@@ -8,7 +9,7 @@
 #include "appearance/parameter_table.h"
 #include "appearance/subsurface/translucent_paint.h"
 #include "core/error.h"
-#include "scene/subsurface_reach.h"
+#include "scene/effects.h"
 
 namespace livery {
 
@@ -18,10 +19,7 @@ namespace {
 constexpr float kSteps = 64.0f;
 
 std::vector<glm::ivec3> sends_on(const Scene& scene, const EffectLevels& levels) {
-    // Asked several times a frame: most levels need not look at the scene.
-    if (levels[Effect::interreflection] == 0) return {};
-    const FramePlan plan = plan_frame(scene, levels, FrameStage::radiance);
-    if (!find_pass(plan, PassKind::interreflection)) return {};
+    if (!sends_light_on(scene, levels)) return {};
     std::vector<glm::ivec3> steps;
     for (const Material& material : scene.part_materials) {
         const glm::vec3 albedo = hemispherical_albedo(bsdf_of(material));
@@ -59,8 +57,6 @@ std::string difference(const SolveKey& solved, const SolveKey& wanted) {
     return "";
 }
 
-}  // namespace
-
 SolveKeys keys_of(const FrameDescription& description) {
     check_argument(description.setup != nullptr, "the frame has no projector");
     const EffectLevels levels =
@@ -84,6 +80,16 @@ SolveKeys keys_of(const FrameDescription& description) {
                        "a wipe shows two looks of one product, these are of two");
     }
     return keys;
+}
+
+}  // namespace
+
+WantedFrame::WantedFrame(FrameDescription description) : FrameDescription(std::move(description)) {
+    try {
+        keys = keys_of(*this);
+    } catch (const std::invalid_argument& error) {
+        malformed = error.what();
+    }
 }
 
 SolveKeys with_levels(SolveKeys keys, const EffectLevels& levels) {

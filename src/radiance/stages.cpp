@@ -1,15 +1,38 @@
-#include "radiance/work_items.h"
+#include "radiance/stages.h"
 
-#include <algorithm>
+#include <array>
+#include <chrono>
 #include <numeric>
 
-#include "radiance/fragment_inputs.h"
 #include "radiance/light/environment_filter.h"
 #include "radiance/light/mirror_lobes.h"
 #include "radiance/light/mirror_quadrature.h"
 #include "radiance/surface_map.h"
+#include "scene/artwork_coats.h"
 
 namespace livery {
+
+FragmentRays rays_of(const EffectLevels& levels) {
+    constexpr std::array kLight{0, 1, 16, 64};
+    constexpr std::array<SkyRays, 4> kSky{
+        {{0, 0, false}, {8, 0, true}, {16, 128, false}, {64, 256, false}}};
+    constexpr std::array kMirror{kNoNodes, 0, 16, 24};
+    constexpr std::array kBounces{0, 1, 16};
+    const auto at = [&](const auto& table, Effect effect) {
+        return table.at(static_cast<std::size_t>(levels[effect]));
+    };
+    const std::array<TransportDetail, 3> subsurface{{{}, {200, false}, {600, true}}};
+    return {at(kLight, Effect::shadows),
+            at(kSky, Effect::occlusion),
+            at(kMirror, Effect::mirrored_environment),
+            at(kBounces, Effect::interreflection),
+            at(subsurface, Effect::subsurface)};
+}
+
+double StageClock::now_ms() {
+    const auto now = std::chrono::steady_clock::now().time_since_epoch();
+    return std::chrono::duration<double, std::milli>(now).count();
+}
 
 void count_work(const Scene& whole, const FrameCounts& counts, FramePlan& plan) {
     const Scene scene = at_levels(whole, plan.levels);

@@ -1,4 +1,4 @@
-#include "live/solve_key.h"
+#include "live/frame_description.h"
 
 #include "live/frame_thread_fixture.h"
 
@@ -11,7 +11,7 @@ TEST(SolveKey, SaysWhatIsMissing) {
     setup->view = test_view(8, 8);
     description.setup = setup;
     description.scene.product = std::make_shared<Product>();
-    const SolveKeys wanted = keys_of(description);
+    const SolveKeys wanted = WantedFrame(description).keys;
     EXPECT_EQ(missing_of(wanted, wanted), "");
     EXPECT_EQ(missing_of({}, wanted), "picture");
     EXPECT_FALSE(covers_light({}, wanted));
