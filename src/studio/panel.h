@@ -40,8 +40,8 @@ struct Panel {
 
     void (*start)(Studio& studio) = nullptr;  ///< once, when the window's threads run
     void (*step)(Studio& studio) = nullptr;   ///< once a frame of the window, before it is drawn
-    void (*stop)(Studio& studio) =
-        nullptr;  ///< before the threads end, the window's context current
+    /// Before the threads end, with the window's context current.
+    void (*stop)(Studio& studio) = nullptr;
     /// What a key means now that nobody types; passed_on: nothing here.
     EventUse (*press)(Studio& studio, const KeyChord& chord, bool repeated) = nullptr;
     bool esc_closes = false;

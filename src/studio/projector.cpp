@@ -324,33 +324,21 @@ void set_frozen(Studio& studio, bool frozen) {
 
 namespace {
 
+void turn_black(Studio& studio) { set_black(studio, !studio.black); }
+bool is_black(const Studio& studio) { return studio.black; }
+void freeze(Studio& studio) { set_frozen(studio, !studio.frozen); }
+bool is_frozen(const Studio& studio) { return studio.frozen; }
+void test_signal(Studio& studio) { show_signal_test(studio, !studio.signal_test_open); }
+bool is_testing(const Studio& studio) { return studio.signal_test_open; }
+
 std::vector<Action> projector_actions() {
-    return {in_dialogs({"black",
-                        "Projector",
-                        "Black",
-                        {key(GLFW_KEY_B), ctrl(GLFW_KEY_B)},
-                        [](Studio& s) { set_black(s, !s.black); },
-                        {},
-                        [](const Studio& s) { return s.black; }}),
-            in_dialogs({"freeze",
-                        "Projector",
-                        "Freeze",
-                        {key(GLFW_KEY_F), ctrl(GLFW_KEY_F)},
-                        [](Studio& s) { set_frozen(s, !s.frozen); },
-                        {},
-                        [](const Studio& s) { return s.frozen; }}),
-            line_above({"monitor-numbers",
-                        "Projector",
-                        "Show numbers on the monitors",
-                        {},
-                        show_monitor_numbers}),
-            {"signal-test",
-             "Projector",
-             "Test picture for the signal",
-             {},
-             [](Studio& s) { show_signal_test(s, !s.signal_test_open); },
-             {},
-             [](const Studio& s) { return s.signal_test_open; }}};
+    const std::vector black{key(GLFW_KEY_B), ctrl(GLFW_KEY_B)};
+    const std::vector frozen{key(GLFW_KEY_F), ctrl(GLFW_KEY_F)};
+    const char *menu = "Projector", *numbers = "Show numbers on the monitors";
+    return {in_dialogs({"black", menu, "Black", black, turn_black, {}, is_black}),
+            in_dialogs({"freeze", menu, "Freeze", frozen, freeze, {}, is_frozen}),
+            line_above({"monitor-numbers", menu, numbers, {}, show_monitor_numbers}),
+            {"signal-test", menu, "Test picture for the signal", {}, test_signal, {}, is_testing}};
 }
 
 }  // namespace

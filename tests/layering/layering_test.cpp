@@ -254,9 +254,9 @@ TEST(Layering, AFolderOfTheStudioIncludesThoseBeforeItAlone) {
     const auto order = order_of_studio(kSource);
     const auto place = [&](const std::string& file) {
         const auto folder = std::filesystem::path(file).parent_path().filename().string();
-        const auto found = std::find(order.begin(), order.end(), folder);
-        EXPECT_NE(found, order.end()) << file << " is in no folder of the list";
-        return found - order.begin();
+        // One that is not named stands beside the last: no other may include it.
+        return std::min(std::find(order.begin(), order.end(), folder), std::prev(order.end())) -
+               order.begin();
     };
     static const std::regex include(R"x(#include "(studio/[^"]+)")x");
     for (const auto& entry :

@@ -19,8 +19,7 @@ struct ItemPlace {
 };
 using ItemPlaces = std::map<std::string, ItemPlace>;
 
-/// name_last_item() adds to these between the two, and to the order of Tab (tab_order.h); main
-/// thread.
+/// name_last_item() adds to these between the two, and to the order of Tab.
 void start_naming_items(bool wanted);
 ItemPlaces take_named_items();
 /// Remembers where the item just drawn is on the screen, under a name that does not depend on the

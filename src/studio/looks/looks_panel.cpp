@@ -114,6 +114,9 @@ const std::vector<SessionLook>& looks_of(const Studio& studio) {
 }
 bool has_several_looks(const Studio& studio) { return looks_of(studio).size() > 1; }
 bool has_compared_look(const Studio& studio) { return studio.compared_look.has_value(); }
+bool is_not_first(const Studio& studio) { return studio.shown_place > 0; }
+bool is_not_last(const Studio& studio) { return studio.shown_place + 1 < looks_of(studio).size(); }
+bool is_wiping(const Studio& studio) { return studio.wiping; }
 
 void show_look_at(Studio& studio, std::size_t place) {
     if (place >= looks_of(studio).size()) return;
@@ -145,7 +148,14 @@ void delete_look(Studio& studio) {
     commit(studio, DeleteLook{studio.shown_look});
 }
 
+void duplicate_look(Studio& studio) { commit(studio, DuplicateLook{studio.shown_look}); }
+void rename_look(Studio& studio) { studio.renaming_look = studio.shown_look; }
+void share_lighting(Studio& studio) { commit(studio, ShareLighting{studio.shown_look}); }
+void wipe(Studio& studio) { studio.wiping = !studio.wiping; }
+
 std::vector<Action> look_actions() {
+    const KeyChord down = key(GLFW_KEY_PAGE_DOWN), up = key(GLFW_KEY_PAGE_UP);
+    const KeyChord right = key(GLFW_KEY_RIGHT), left = key(GLFW_KEY_LEFT);
     std::vector<Action> list{
         line_above({"import-look", "File", "Import look…", {ctrl(GLFW_KEY_I)}, ask_for_look_file}),
         {"export-look", "File", "Export look…", {ctrl(GLFW_KEY_E)}, ask_where_to_export_look},
@@ -161,61 +171,37 @@ std::vector<Action> look_actions() {
                     {ctrl(GLFW_KEY_S)},
                     ask_where_to_save_picture}),
         {"new-look", "Look", "New", {key(GLFW_KEY_N)}, add_look},
-        {"duplicate-look",
-         "Look",
-         "Duplicate",
-         {ctrl(GLFW_KEY_D)},
-         [](Studio& s) { commit(s, DuplicateLook{s.shown_look}); }},
-        {"rename-look",
-         "Look",
-         "Rename",
-         {key(GLFW_KEY_F2)},
-         [](Studio& s) { s.renaming_look = s.shown_look; }},
+        {"duplicate-look", "Look", "Duplicate", {ctrl(GLFW_KEY_D)}, duplicate_look},
+        {"rename-look", "Look", "Rename", {key(GLFW_KEY_F2)}, rename_look},
         {"delete-look", "Look", "Delete", {key(GLFW_KEY_DELETE)}, delete_look, has_several_looks},
-        line_above({"move-look-up",
-                    "Look",
-                    "Move up",
-                    {ctrl(GLFW_KEY_UP)},
-                    move_look<-1>,
-                    [](const Studio& s) { return s.shown_place > 0; }}),
-        {"move-look-down",
-         "Look",
-         "Move down",
-         {ctrl(GLFW_KEY_DOWN)},
-         move_look<1>,
-         [](const Studio& s) { return s.shown_place + 1 < looks_of(s).size(); }},
+        line_above(
+            {"move-look-up", "Look", "Move up", {ctrl(GLFW_KEY_UP)}, move_look<-1>, is_not_first}),
+        {"move-look-down", "Look", "Move down", {ctrl(GLFW_KEY_DOWN)}, move_look<1>, is_not_last},
         {"share-lighting",
          "Look",
          "Light all looks like this one",
          {},
-         [](Studio& s) { commit(s, ShareLighting{s.shown_look}); },
+         share_lighting,
          has_several_looks},
-        repeating(line_above({"next-look",
-                              "Look",
-                              "Next",
-                              {key(GLFW_KEY_PAGE_DOWN), key(GLFW_KEY_RIGHT)},
-                              step_look<1>,
-                              has_several_looks})),
-        repeating({"previous-look",
-                   "Look",
-                   "Previous",
-                   {key(GLFW_KEY_PAGE_UP), key(GLFW_KEY_LEFT)},
-                   step_look<-1>,
-                   has_several_looks}),
+        repeating(line_above(
+            {"next-look", "Look", "Next", {down, right}, step_look<1>, has_several_looks})),
+        repeating(
+            {"previous-look", "Look", "Previous", {up, left}, step_look<-1>, has_several_looks}),
         line_above({"wipe",
                     "Look",
                     "Wipe between A and B",
                     {key(GLFW_KEY_W)},
-                    [](Studio& s) { s.wiping = !s.wiping; },
+                    wipe,
                     has_compared_look,
-                    [](const Studio& s) { return s.wiping; }})};
-    Action& hold_b = list.emplace_back(Action{"hold-b",
-                                              "",
-                                              "Show B while held",
-                                              {key(GLFW_KEY_SPACE), key(GLFW_KEY_GRAVE_ACCENT)},
-                                              [](Studio& s) { s.showing_b = true; },
-                                              has_compared_look});
+                    is_wiping})};
+    Action hold_b{"hold-b",
+                  "",
+                  "Show B while held",
+                  {key(GLFW_KEY_SPACE), key(GLFW_KEY_GRAVE_ACCENT)},
+                  [](Studio& s) { s.showing_b = true; },
+                  has_compared_look};
     hold_b.released = [](Studio& s) { s.showing_b = false; };
+    list.push_back(std::move(hold_b));
     for (int n = 1; n <= 9; ++n) {
         const auto place = static_cast<std::size_t>(n - 1);
         list.push_back({fmt::format("look-{}", n),

@@ -62,7 +62,7 @@ void refresh(Studio& studio) {
     state.problem = named.problem;
     if (!named.problem.empty()) return;
     if (!is_read(named.material)) {
-        // What is drawn wears it as well and has it read (wiring.cpp).
+        // What is drawn wears it as well and has it read (drawing.cpp).
         state.problem = "Reading " + named.material.measured->file.filename().string() + ".";
         return;
     }

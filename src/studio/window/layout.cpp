@@ -61,12 +61,27 @@ void draw_recent_sessions(Studio& studio) {
     ImGui::EndMenu();
 }
 
-/// A region of the window that scrolls on its own.
-void begin_region(const char* name, ImVec2 size, bool raised = true, ImGuiWindowFlags flags = 0) {
+/// A region of the window that scrolls on its own. Regions touch; what is inside them does not.
+struct Region {
+    const char* name;
+    ImVec2 size, padding, spacing;
+    bool raised = true;
+    ImGuiWindowFlags flags = ImGuiWindowFlags_NoScrollbar;
+};
+
+template <typename Draw>
+void draw_region(const Region& region, const Draw& draw) {
     ImGui::PushStyleColor(ImGuiCol_ChildBg,
-                          raised ? colours::panel : ImVec4(0.085f, 0.085f, 0.085f, 1.0f));
-    ImGui::BeginChild(name, size, false, flags | ImGuiWindowFlags_AlwaysUseWindowPadding);
+                          region.raised ? colours::panel : ImVec4(0.085f, 0.085f, 0.085f, 1.0f));
+    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, region.padding);
+    ImGui::BeginChild(
+        region.name, region.size, false, region.flags | ImGuiWindowFlags_AlwaysUseWindowPadding);
+    ImGui::PopStyleVar();
     ImGui::PopStyleColor();
+    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, region.spacing);
+    draw();
+    ImGui::PopStyleVar();
+    ImGui::EndChild();
 }
 
 /// Changes a column's width by dragging; `direction` is 1 when the column is left of it.
@@ -125,14 +140,6 @@ void draw_middle_column(Studio& studio) {
     }
 }
 
-/// Regions touch; what is inside them does not.
-template <typename Draw>
-void with_spacing(ImVec2 spacing, Draw draw) {
-    ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, spacing);
-    draw();
-    ImGui::PopStyleVar();
-}
-
 void draw_columns(Studio& studio, float height, ImVec2 spacing) {
     const float width = ImGui::GetContentRegionAvail().x, unit = em(1.0f);
     const float splitters = 2.0f * std::max(3.0f, em(0.3f));
@@ -141,22 +148,20 @@ void draw_columns(Studio& studio, float height, ImVec2 spacing) {
     const float squeeze = std::min(1.0f, share / (studio.left_width_em + studio.right_width_em));
     const float left = std::floor(studio.left_width_em * squeeze * unit);
     const float right = std::floor(studio.right_width_em * squeeze * unit);
-    begin_region("left", {left, height});
-    with_spacing(spacing, [&] { draw_left_column(studio); });
-    ImGui::EndChild();
+    const ImVec2 padding = ImGui::GetStyle().WindowPadding;
+    draw_region({"left", {left, height}, padding, spacing, true, 0},
+                [&] { draw_left_column(studio); });
     draw_splitter("left-splitter", studio.left_width_em, 1.0f, 11.0f, 30.0f, height);
-    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {em(0.45f), em(0.45f)});
-    begin_region("middle",
+    draw_region({"middle",
                  {width - left - right - splitters, height},
+                 {em(0.45f), em(0.45f)},
+                 spacing,
                  false,
-                 ImGuiWindowFlags_NoScrollWithMouse | ImGuiWindowFlags_NoScrollbar);
-    ImGui::PopStyleVar();
-    with_spacing(spacing, [&] { draw_middle_column(studio); });
-    ImGui::EndChild();
+                 ImGuiWindowFlags_NoScrollWithMouse | ImGuiWindowFlags_NoScrollbar},
+                [&] { draw_middle_column(studio); });
     draw_splitter("right-splitter", studio.right_width_em, -1.0f, 17.0f, 40.0f, height);
-    begin_region("right", {right, height});
-    with_spacing(spacing, [&] { draw_right_column(studio); });
-    ImGui::EndChild();
+    draw_region({"right", {right, height}, padding, spacing, true, 0},
+                [&] { draw_right_column(studio); });
 }
 
 }  // namespace
@@ -203,25 +208,16 @@ void draw_layout(Studio& studio) {
     const float gap = std::max(2.0f, em(0.18f));
     const float bar = em(3.5f), status = em(1.75f);
     if (has_vote_bar(studio)) {
-        ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {0.0f, 0.0f});
-        begin_region("vote-bar", {0.0f, em(4.0f)}, true, ImGuiWindowFlags_NoScrollbar);
-        ImGui::PopStyleVar();
-        with_spacing(spacing, [&] { draw_vote_bar(studio); });
-        ImGui::EndChild();
+        draw_region({"vote-bar", {0.0f, em(4.0f)}, {0.0f, 0.0f}, spacing},
+                    [&] { draw_vote_bar(studio); });
     }
     const float columns = ImGui::GetContentRegionAvail().y - bar - status - gap;
     draw_columns(studio, columns, spacing);
     ImGui::Dummy({0.0f, gap});
-    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {em(0.7f), em(0.4f)});
-    begin_region("bar", {0.0f, bar}, true, ImGuiWindowFlags_NoScrollbar);
-    ImGui::PopStyleVar();
-    with_spacing(spacing, [&] { draw_projector_bar(studio); });
-    ImGui::EndChild();
-    ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, {em(0.7f), em(0.25f)});
-    begin_region("status", {0.0f, status}, false, ImGuiWindowFlags_NoScrollbar);
-    ImGui::PopStyleVar();
-    with_spacing(spacing, [&] { draw_status_line(studio); });
-    ImGui::EndChild();
+    draw_region({"bar", {0.0f, bar}, {em(0.7f), em(0.4f)}, spacing},
+                [&] { draw_projector_bar(studio); });
+    draw_region({"status", {0.0f, status}, {em(0.7f), em(0.25f)}, spacing, false},
+                [&] { draw_status_line(studio); });
     ImGui::PopStyleVar();
     ImGui::End();
 }

@@ -9,8 +9,6 @@
 
 struct GLFWwindow;
 
-struct GLFWwindow;
-
 namespace livery {
 
 /// Of the desktop, without the window manager's frame.
