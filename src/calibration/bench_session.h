@@ -1,15 +1,36 @@
-// Showing pictures and photographing them so that each photograph is known to show its picture.
+// Showing pictures and photographing them so that each photograph is known to show its picture; and
+// the projector's light in photographs of a mock-up.
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/bench_ports.h"
+#include "core/error.h"
 #include "core/image.h"
 #include "core/progress.h"
 
 namespace livery {
+
+/// Places of camera pixels.
+using LitPixels = std::vector<std::uint32_t>;
+
+/// What a photograph holds over one of black, mean of the channels, file units a second: 1 channel.
+ImageF light_over_black(const Photograph& photograph, const Photograph& black);
+
+/// Pixels with at least a tenth of the brightest ones' light, thinned to some 40000 where asked.
+LitPixels lit_pixels(const ImageF& light, std::size_t thinned_to = 0);
+
+/// Mean over these pixels; 0 for none.
+double lit_mean(const ImageF& light, const LitPixels& lit);
+
+/// A port that lights the mock-up alone (non-zero pixels), and what is near it: a pose that is a
+/// little off, a lens that is a little soft. What stands around it stays dark in the show; if it
+/// were lit here, its light on the mock-up would be taken for what the mock-up's own pixels send.
+ShowPicture shown_on(const Image8& mockup, const ShowPicture& show);
 
 /// A run of pictures and photographs through the ports: waits for latency, checks that each picture
 /// arrived, keeps one exposure. Where the photographs are what they are (`BenchPorts::turn_to`)
@@ -71,6 +92,20 @@ class BenchSession {
     Photograph black_, white_;
     double linearity_ = 0.0;
     double noise_ = 0.0;  ///< of one photograph's thinned values
+};
+
+/// No photograph shows that the projector followed. Those of its newest `pictures()` pictures need
+/// not be of what they say: whoever kept them forgets them.
+class NothingShown : public Refused {
+  public:
+    static constexpr int kAll = std::numeric_limits<int>::max();
+
+    NothingShown(std::string why, std::string fix, int pictures)
+        : Refused(std::move(why), std::move(fix)), pictures_(pictures) {}
+    int pictures() const { return pictures_; }
+
+  private:
+    int pictures_;
 };
 
 }  // namespace livery

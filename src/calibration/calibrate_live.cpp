@@ -1,3 +1,5 @@
+#include "calibration/calibrate_live.h"
+
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -6,26 +8,24 @@
 
 #include "calibration/bench_session.h"
 #include "calibration/captures/captures.h"
-#include "calibration/captures/mockup_light.h"
 #include "calibration/colour/colour.h"
 #include "calibration/colour/colour_report.h"
 #include "calibration/colour/colour_samples.h"
 #include "calibration/colour/mixing.h"
+#include "calibration/predict.h"
 #include "core/error.h"
 #include "core/statistics.h"
+#include "core/time.h"
+#include "scene/mockup_mask.h"
 
 namespace livery {
 namespace {
 
 constexpr int kToMeet = 18;  // photographs: latency and exposure, and white and black once more
 
-double seconds_since(std::chrono::steady_clock::time_point start) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
 /// Pictures that are shown to find places.
-std::size_t shown_for_places(const LiveOptions& options) {
-    return place_roles(options.places, options.width, options.height).size();
+std::size_t shown_for_places(const CalibrationSettings& settings) {
+    return place_roles(settings.places, settings.width, settings.height).size();
 }
 
 /// Share of the lit pixels on which a stripe picture and its inverse do not add up to white.
@@ -54,16 +54,14 @@ double broken_share(const ImageF& stripes,
 /// themselves tell comes before the one that the session ran into.
 class LiveCalibration {
   public:
-    LiveCalibration(BenchSession& bench, const LiveOptions& options)
-        : bench_(bench),
-          options_(options),
-          drives_{options.colour.dark_drive, options.colour.bright_drive} {}
+    LiveCalibration(BenchSession& bench, const CalibrationSettings& settings)
+        : bench_(bench), settings_(settings) {}
 
     Captures captures;
     std::vector<std::pair<std::string, std::string>> kept;  ///< roles and files of a recording
 
     CaptureVerdict judge(bool with_stripes) const {
-        return judge_captures(captures, options_.width, options_.height, drives_, with_stripes);
+        return judge_captures(captures, settings_, with_stripes);
     }
     void add(const std::string& role, Photograph photograph) {
         for (const std::string& file : photograph.kept_as) kept.emplace_back(role, file);
@@ -85,8 +83,7 @@ class LiveCalibration {
     void photograph_stripes(const Pattern& stripes, const Pattern& inverse);
 
     BenchSession& bench_;
-    const LiveOptions& options_;
-    ShownDrives drives_;
+    const CalibrationSettings& settings_;
     Photograph white_, black_;
     std::string broken_;  ///< the first pair of stripes that does not add up to white
 };
@@ -113,10 +110,10 @@ void LiveCalibration::photograph_stripes(const Pattern& stripes, const Pattern& 
 /// photographed before is judged once all of it is there.
 void LiveCalibration::photograph_geometry() {
     const auto pattern = [&](std::size_t number) {
-        return place_pattern(options_.places, options_.width, options_.height, number);
+        return place_pattern(settings_.places, settings_.width, settings_.height, number);
     };
-    const std::size_t count = geometry_roles(options_.width, options_.height).size();
-    const std::size_t with_fringes = shown_for_places(options_);
+    const std::size_t count = geometry_roles(settings_.width, settings_.height).size();
+    const std::size_t with_fringes = shown_for_places(settings_);
     if (bench_.fixed()) {
         for (std::size_t k = 0; k < with_fringes; ++k) photograph(pattern(k));
         return;
@@ -135,7 +132,7 @@ void LiveCalibration::photograph_geometry() {
 void LiveCalibration::photograph_ends(bool white_first) {
     for (const bool white : {white_first, !white_first}) {
         const std::string role = white ? "white" : "black";
-        const Image8 drive(options_.width, options_.height, 3, white ? 255 : 0);
+        const Image8 drive(settings_.width, settings_.height, 3, white ? 255 : 0);
         (white ? white_ : black_) = bench_.take(drive, role, white != white_first);
         add(role, white ? white_ : black_);
     }
@@ -205,31 +202,49 @@ void leave_out_unlit(const Image8& mockup, ProjectorToCamera& map) {
 
 }  // namespace
 
-LiveResult calibrate_live(const BenchPorts& bench,
-                          const LiveOptions& options,
-                          const Progress& progress) {
-    check_argument(options.shots >= 1 && options.shots <= 1000,
-                   "shots " + std::to_string(options.shots) + " is outside 1..1000");
-    check_argument(options.mockup.empty() ||
-                       (options.mockup.width == options.width &&
-                        options.mockup.height == options.height && options.mockup.channels == 1),
+Image8 mockup_of(const CalibrationSettings& settings) {
+    if (!settings.mockup.empty() || !settings.projector || !settings.product)
+        return settings.mockup;
+    return mockup_mask(settings.product->mesh, *settings.projector);
+}
+
+CaptureSeconds CalibrationResult::all_captured() const {
+    if (!room) return captured;
+    const CaptureSeconds& first = room->seen.captured;
+    return {first.all + captured.all,
+            first.camera + captured.camera,
+            first.projector + captured.projector};
+}
+
+double CalibrationResult::all_solve_seconds() const {
+    return solve_seconds + predict_seconds + (room ? room->solve_seconds : 0.0);
+}
+
+CalibrationResult calibrate_live(const BenchPorts& bench,
+                                 CalibrationSettings settings,
+                                 const Progress& progress) {
+    check_argument(settings.shots >= 1 && settings.shots <= 1000,
+                   "shots " + std::to_string(settings.shots) + " is outside 1..1000");
+    // Photographs that were taken before are of what was lit then.
+    const Image8 mockup = bench.turn_to ? Image8() : mockup_of(settings);
+    check_argument(mockup.empty() || (mockup.width == settings.width &&
+                                      mockup.height == settings.height && mockup.channels == 1),
                    "the mock-up's mask is not one channel of the projector's size");
     check_argument(!bench.turn_to || !bench.measure_xyz,
                    "a colorimeter reads what is shown now, these photographs were taken before");
     BenchPorts ports = bench;
-    if (!options.mockup.empty() && ports.show) ports.show = shown_on(options.mockup, bench.show);
-    const ColourOptions& colour = options.colour;
-    LiveResult result;
+    if (!mockup.empty() && ports.show) ports.show = shown_on(mockup, bench.show);
+    CalibrationResult result;
     result.patterns =
-        !options.patterns.empty()
-            ? options.patterns
+        !settings.patterns.empty()
+            ? settings.patterns
             : colour_patterns(
-                  options.width, options.height, colour.dark_drive, colour.bright_drive);
+                  settings.width, settings.height, settings.dark_drive, settings.bright_drive);
 
     const auto start = std::chrono::steady_clock::now();
     const auto expected =
-        (options.map ? (bench.turn_to ? 0 : 2) : static_cast<int>(shown_for_places(options))) +
-        (bench.turn_to ? 0 : kToMeet) + static_cast<int>(result.patterns.size()) * options.shots;
+        (settings.map ? (bench.turn_to ? 0 : 2) : static_cast<int>(shown_for_places(settings))) +
+        (bench.turn_to ? 0 : kToMeet) + static_cast<int>(result.patterns.size()) * settings.shots;
     Progress capturing = progress;
     if (progress.report)
         capturing.report = [&](double fraction, std::string_view stage) {
@@ -237,33 +252,32 @@ LiveResult calibrate_live(const BenchPorts& bench,
         };
     BenchSession session(ports, capturing, expected);
     const bool fixed = session.fixed();
-    if (!fixed) session.meet(options.width, options.height);
-    LiveCalibration live(session, options);
+    if (!fixed) session.meet(settings.width, settings.height);
+    LiveCalibration live(session, settings);
     std::vector<std::string> odd_map;
     const auto find_map = [&] {
-        return map_of_captures(live.captures, options.width, options.height, odd_map);
+        return map_of_captures(live.captures, settings.width, settings.height, odd_map);
     };
-    if (!options.map) {
+    if (!settings.map) {
         live.photograph_geometry();
     } else if (!fixed) {
         live.photograph_ends(false);  // the first colour picture is dark
     }
     if (!fixed) {  // it aims the colorimeter
-        result.map = options.map ? *options.map : find_map();
-        if (options.map && !options.mockup.empty()) leave_out_unlit(options.mockup, result.map);
+        result.map = settings.map ? *settings.map : find_map();
+        if (settings.map && !mockup.empty()) leave_out_unlit(mockup, result.map);
     }
     result.latency_photographs = session.latency();
 
     // The six pictures; the colorimeter reads each while it is known to be shown
-    ColourOptions with_xyz = colour;
     const bool measures = static_cast<bool>(ports.measure_xyz) &&
-                          !colour.camera_to_xyz.has_primaries &&
-                          colour.camera_to_xyz.origin.empty();
-    const bool full_range = colour.dark_drive == 0 && colour.bright_drive == 255;
-    CameraToXyz& xyz = with_xyz.camera_to_xyz;
+                          !settings.camera_to_xyz.has_primaries &&
+                          settings.camera_to_xyz.origin.empty();
+    const bool full_range = settings.dark_drive == 0 && settings.bright_drive == 255;
+    CameraToXyz& xyz = settings.camera_to_xyz;
     if (measures) {
         xyz.has_primaries = true;
-        xyz.measured_at_px = place_to_measure(result.map, live.light(), options.mockup);
+        xyz.measured_at_px = place_to_measure(result.map, live.light(), mockup);
     }
     const auto measure = [&](const std::string& role) {
         if (!measures) return;
@@ -275,14 +289,14 @@ LiveResult calibrate_live(const BenchPorts& bench,
         if (role == "blue") xyz.primaries_xyz[2] = value();
     };
     const auto photograph = [&](const Pattern& pattern) {
-        live.photograph(pattern, options.shots);
-        result.colour_photographs += options.shots;
+        live.photograph(pattern, settings.shots);
+        result.colour_photographs += settings.shots;
         if (full_range) measure(pattern.role);
     };
     for (const Pattern& pattern : result.patterns) photograph(pattern);
 
     if (measures && !full_range)
-        for (const Pattern& pattern : colour_patterns(options.width, options.height, 0, 255)) {
+        for (const Pattern& pattern : colour_patterns(settings.width, settings.height, 0, 255)) {
             if (pattern.role == "gray-levels") break;
             session.take(
                 pattern.drive, pattern.role + " for the colorimeter", pattern.role != "dark-gray");
@@ -293,29 +307,29 @@ LiveResult calibrate_live(const BenchPorts& bench,
         for (const std::uint8_t drive : {std::uint8_t{255}, std::uint8_t{0}}) {
             const std::string role = drive ? "white" : "black";
             Photograph& end = drive ? result.white : result.black;
-            end = session.take(Image8(options.width, options.height, 3, drive), role);
+            end = session.take(Image8(settings.width, settings.height, 3, drive), role);
             live.add(role, end);
         }
     const auto judge_start = std::chrono::steady_clock::now();
     // Before anything is solved: the projector must not be blamed for a shadow.
-    CaptureVerdict verdict = live.judge(fixed && !options.map);
-    if (fixed) result.map = options.map ? *options.map : find_map();
+    CaptureVerdict verdict = live.judge(fixed && !settings.map);
+    if (fixed) result.map = settings.map ? *settings.map : find_map();
     verdict.warnings.insert(verdict.warnings.end(), odd_map.begin(), odd_map.end());
     const double judge_seconds = seconds_since(judge_start);
 
     // Is white the sum of the channels? If not, mosaics of colours
-    if (options.patterns.empty()) {
+    if (settings.patterns.empty()) {
         const double additivity =
             pool_mixing(sample_colours(live.captures.colours, result.map)).additivity_error;
-        if (additivity > kAdditivityWarning && colour.mode == ColourMode::robust)
-            for (Pattern& pattern : mosaic_patterns(options.width, options.height, kMosaics)) {
+        if (additivity > kAdditivityWarning && settings.mode == ColourMode::robust)
+            for (Pattern& pattern : mosaic_patterns(settings.width, settings.height, kMosaics)) {
                 photograph(pattern);
                 result.patterns.push_back(std::move(pattern));
             }
         if (additivity <= kAdditivityWarning) xyz.white_xyz.reset();  // only its noise
     }
-    ports.show(Image8(options.width, options.height, 3));
-    result.capture_seconds = seconds_since(start) - judge_seconds;
+    ports.show(Image8(settings.width, settings.height, 3));
+    result.captured.all = seconds_since(start) - judge_seconds;
 
     const auto solve_start = std::chrono::steady_clock::now();
     Progress solving = progress;
@@ -324,7 +338,7 @@ LiveResult calibrate_live(const BenchPorts& bench,
             progress.report(0.9 + 0.1 * fraction, stage);
         };
     result.calibration =
-        calibrate_judged(live.captures, verdict, result.patterns, result.map, with_xyz, solving);
+        calibrate_judged(live.captures, verdict, result.patterns, result.map, settings, solving);
     result.captures = std::move(live.captures.colours);
     result.kept = std::move(live.kept);
     if (fixed) result.colour_photographs = static_cast<int>(result.captures.size());
@@ -333,31 +347,40 @@ LiveResult calibrate_live(const BenchPorts& bench,
             "the projector's picture reaches the camera " + std::to_string(session.latency()) +
             (session.latency() == 1 ? " photograph" : " photographs") +
             " late; each was awaited; a game mode shortens it");
-        seal(result.calibration);
     }
+    auto& warnings = result.calibration.warnings;
+    warnings.insert(warnings.end(), settings.warnings.begin(), settings.warnings.end());
     result.solve_seconds = judge_seconds + seconds_since(solve_start);
+
+    const auto predict_start = std::chrono::steady_clock::now();
+    if (!settings.irradiance.empty())
+        result.calibration = predict_hidden(std::move(result.calibration), settings.irradiance);
+    result.predict_seconds = seconds_since(predict_start);
+    seal(result.calibration);
+    result.projector = std::move(settings.projector);
+    result.irradiance = std::move(settings.irradiance);
     return result;
 }
 
 LiveMap photograph_map(const BenchPorts& bench,
-                       const LiveOptions& options,
+                       const CalibrationSettings& settings,
                        const Progress& progress) {
     const auto start = std::chrono::steady_clock::now();
-    const int expected = kToMeet + static_cast<int>(shown_for_places(options));
+    const int expected = kToMeet + static_cast<int>(shown_for_places(settings));
     BenchSession session(bench, progress, expected);
-    if (!session.fixed()) session.meet(options.width, options.height);
-    LiveCalibration live(session, options);
+    if (!session.fixed()) session.meet(settings.width, settings.height);
+    LiveCalibration live(session, settings);
     live.photograph_geometry();
     if (session.fixed()) live.judge(true);
-    bench.show(Image8(options.width, options.height, 3));
+    bench.show(Image8(settings.width, settings.height, 3));
     LiveMap result;
-    result.map = map_of_captures(live.captures, options.width, options.height, result.warnings);
+    result.map = map_of_captures(live.captures, settings.width, settings.height, result.warnings);
     result.white = live.white();
     result.black = live.black();
     result.kept = std::move(live.kept);
     result.camera_width = live.captures.width;
     result.camera_height = live.captures.geometry.front().photograph.image.height;
-    result.capture_seconds = seconds_since(start);
+    result.captured.all = seconds_since(start);
     return result;
 }
 

@@ -170,7 +170,6 @@ ColourCalibration predict_hidden(ColourCalibration c, const ImageF& geometry) {
     const auto refuse = [&c](const std::string& why) {
         c.warnings.push_back("pixels hidden from the camera are not predicted and stay black: " +
                              why);
-        seal(c);
         return std::move(c);
     };
 
@@ -244,7 +243,6 @@ ColourCalibration predict_hidden(ColourCalibration c, const ImageF& geometry) {
         return is_valid(static_cast<PixelStatus>(s));
     });
     c.predicted_fraction = static_cast<double>(hidden.size()) / static_cast<double>(valid);
-    seal(c);
     return c;
 }
 

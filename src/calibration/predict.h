@@ -6,9 +6,9 @@
 
 namespace livery {
 
-/// The same calibration with the hidden pixels predicted, marked and sealed again. `geometry` (one
-/// channel, projector pixels) is the irradiance that each pixel's surface receives, on any scale:
-/// cos(theta) / distance^2; 0 where less than half of the pixel lies on the mock-up.
+/// The same calibration with the hidden pixels predicted and marked; not sealed yet. `geometry`
+/// (one channel, projector pixels) is the irradiance that each pixel's surface receives, on any
+/// scale: cos(theta) / distance^2; 0 where less than half of the pixel lies on the mock-up.
 ///
 /// Filled are pixels without a measurement of their own (unlit, not decoded, edge, too dark). What
 /// the camera did measure and had to reject (saturated, one channel, ill-conditioned) stays as it

@@ -9,7 +9,6 @@
 #include <fmt/format.h>
 
 #include "calibration/bench_session.h"
-#include "calibration/captures/mockup_light.h"
 #include "core/error.h"
 #include "core/statistics.h"
 

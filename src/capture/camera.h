@@ -7,6 +7,7 @@
 
 #include "core/bench_ports.h"
 #include "core/error.h"
+#include "core/progress.h"
 
 namespace livery {
 
@@ -66,5 +67,25 @@ class Camera {
     /// What it sees now, for looking at: sRGB, 3 channels. Empty where it cannot.
     virtual Image8 live_view() = 0;
 };
+
+/// The camera as a port. What somebody can put right in place (cable, power, another program, a
+/// full card) is told to `on_wait` and tried again until it works, then told once more, or until a
+/// stop is asked for (Cancelled). Other faults are thrown. `camera` must outlive the port.
+TakePhotograph patient(Camera& camera, const Progress& progress, TellWait on_wait);
+
+/// Seconds of a shutter speed as cameras write it: "1/60", "0.1000s", "0.4", "2\"". Negative:
+/// "bulb", "auto" and what else is no time.
+double seconds_of_shutter_speed(const std::string& text);
+
+/// Of the dial.
+bool is_manual(const std::string& program);
+/// Of its files: RAW, alone or beside a JPEG.
+bool is_raw_format(const std::string& format);
+/// How long the shutter is open where the camera says this; negative: no time. The series 1/30,
+/// 1/60, 1/125 is of exact halves (1/32, 1/64, 1/128), with thirds or halves of a stop between,
+/// said in round numbers that are up to 7% off (ISO 516).
+double open_time_s(const CameraSetting& exposure, const std::string& said);
+/// The offered time nearest to this, in ratio; empty: it offers none.
+std::string nearest_time(const CameraSetting& exposure, double seconds);
 
 }  // namespace livery

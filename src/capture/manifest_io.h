@@ -2,11 +2,13 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <string_view>
 #include <vector>
 
 #include "capture/captures_folder.h"
 #include "capture/patterns_folder.h"
+#include "capture/stand_folders.h"
 #include "core/json.h"
 
 namespace livery {
@@ -50,5 +52,30 @@ CapturesFolder parse_captures_manifest(const std::string& text,
 PatternsManifest parse_patterns_manifest(const std::string& text,
                                          const std::filesystem::path& manifest);
 std::vector<double> parse_response(const std::string& text, const std::filesystem::path& file);
+
+inline constexpr double kFarthestPlace_mm = 1e6;
+inline constexpr double kSmallestSphere_mm = 0.1;
+
+/// [x, y, z]. Throws FileError.
+glm::dvec3 read_place_mm(const JsonReader& field);
+
+/// `centre_mm` and `diameter_mm`. Throws FileError.
+SpherePlace read_sphere_place(const JsonReader& sphere);
+
+/// A share of the light, from `lowest` to 1, or [R, G, B] of them. Throws FileError.
+glm::dvec3 read_share(const JsonReader& share, double lowest);
+
+/// A folder's manifest.json. Throws FileError for what is no folder.
+std::filesystem::path manifest_in(const std::filesystem::path& folder);
+
+struct CameraText {
+    std::string text;    ///< a camera file's
+    std::string origin;  ///< what it was read from, for messages
+};
+/// The member `camera` of `owner`, whose JSON is `json`: a camera file's fields, or its name beside
+/// the manifest. Throws FileError.
+CameraText read_camera_text(const JsonReader& owner,
+                            const Json& json,
+                            const std::filesystem::path& manifest);
 
 }  // namespace livery

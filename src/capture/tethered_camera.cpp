@@ -21,8 +21,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "capture/camera.h"
 #include "capture/camera_messages.h"
-#include "capture/camera_words.h"
 #include "capture/captures_folder.h"
 #include "capture/transfer.h"
 #include "core/error.h"

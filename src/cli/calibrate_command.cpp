@@ -91,17 +91,17 @@ Command calibrate_color_command() {
          {"paper", "robust"}},
     };
     command.run = [arguments](const CommonOptions&, const Progress& progress) {
-        CapturedCalibrationRequest request;
-        request.captures = arguments->captures;
-        request.patterns_manifest = arguments->patterns;
-        if (!arguments->map.empty()) request.map = arguments->map;
-        if (!arguments->camera_to_xyz.empty()) request.camera_to_xyz = arguments->camera_to_xyz;
-        request.mode = arguments->mode == "paper" ? ColourMode::paper : ColourMode::robust;
+        CalibrationPhotographs taken{arguments->captures, arguments->patterns, std::nullopt};
+        if (!arguments->map.empty()) taken.map = arguments->map;
+        CalibrationSettings settings;
+        if (!arguments->camera_to_xyz.empty())
+            settings.camera_to_xyz = read_camera_to_xyz(arguments->camera_to_xyz);
+        settings.mode = arguments->mode == "paper" ? ColourMode::paper : ColourMode::robust;
         std::optional<View> projector;
         if (!arguments->camera.empty()) {
             projector = read_camera_file(arguments->camera);
-            const CapturesFolder folder = read_captures_folder(
-                request.captures, PhotographUse::light, request.patterns_manifest);
+            const CapturesFolder folder =
+                read_captures_folder(taken.folder, PhotographUse::light, taken.patterns_manifest);
             check_projector(
                 *projector, arguments->camera, folder.projector_width, folder.projector_height);
         }
@@ -111,17 +111,17 @@ Command calibrate_color_command() {
                     "--product: found no --camera, expected the projector's camera file, as "
                     "calibrate register writes it");
             }
-            request.product = find_product(arguments->product, parse_unit(arguments->unit));
-            request.projector = projector;
+            settings.product = find_product(arguments->product, parse_unit(arguments->unit));
+            settings.projector = projector;
         }
         Outcome outcome;
         try {
-            const ColourCalibration calibration = calibrate_from_folder(request, progress);
+            const ColourCalibration calibration = calibrate_from_folder(taken, settings, progress);
             if (projector) {
                 write_setup(arguments->out, calibration, *projector);
-                if (request.product) {
+                if (settings.product) {
                     write_origin(arguments->out,
-                                 origin_for(*request.product, calibration.made_with));
+                                 origin_for(*settings.product, calibration.made_with));
                 }
             } else {
                 write_calibration(arguments->out, calibration);
@@ -147,7 +147,7 @@ Command calibrate_color_command() {
                 "projected: " + text_of(pixel_shares(calibration, {})) + " of the lit pixels\n";
             for (const auto& warning : calibration.warnings)
                 outcome.text += "warning: " + warning + "\n";
-            if (!request.camera_to_xyz)
+            if (arguments->camera_to_xyz.empty())
                 outcome.text +=
                     "without --camera-to-xyz the camera's red, green and blue count as Rec.709's: "
                     "RAW photographs then turn every paint pink or green\n";

@@ -9,7 +9,8 @@
 #include <fmt/format.h>
 
 #include "calibration/preflight.h"
-#include "capture/patient_camera.h"
+#include "calibration/settings.h"
+#include "capture/camera.h"
 #include "cli/capture_options.h"
 #include "cli/capture_report.h"
 #include "cli/command.h"
@@ -21,7 +22,6 @@
 #include "jobs/calibrate/bench_calibration.h"
 #include "jobs/calibrate/calibration_folder.h"
 #include "jobs/calibrate/staged_calibration.h"
-#include "jobs/camera_to_xyz_file.h"
 #include "jobs/capture_bench.h"
 #include "jobs/watched_captures.h"
 #include "projection/desktop_watch.h"
@@ -134,7 +134,7 @@ struct CaptureCommandRun {
     StagedCalibration staged;
     Outcome outcome;
 
-    BenchCalibrationRequest& request() { return staged.request; }
+    CalibrationSettings& request() { return staged.settings; }
 
     void refuse(const Refused& refused) {
         report_refusal(refused, outcome);
@@ -146,11 +146,10 @@ struct CaptureCommandRun {
 
 /// The preflight's lines as they come; whether a capture makes sense.
 bool look_before(CaptureCommandRun& run, const BenchPorts& ports, const Progress& progress) {
-    const LiveOptions options = live_options_of(run.request());
     run.outcome.figures["preflight"] = Json::array();
     bool fit = true;
     preflight(ports,
-              {options.width, options.height, options.mockup},
+              {run.request().width, run.request().height, mockup_of(run.request())},
               progress,
               [&](const GradedFigure& figure) {
                   run.outcome.figures["preflight"].push_back(json_of(figure));
@@ -181,7 +180,7 @@ void check_again(const CaptureCommandRun& run) {
         for (const auto stage : {CalibrationStage::geometry, CalibrationStage::colour}) {
             const auto folder = folder_of(run.staged, stage);
             if (!std::filesystem::exists(folder / "recording.json")) continue;
-            Recording recording(folder, run.staged.request.made_with);
+            Recording recording(folder, run.staged.settings.made_with);
             found += take_again(recording, role);
         }
         if (found == 0)
@@ -218,7 +217,7 @@ Outcome fit_response(CaptureCommandRun run,
 Outcome capture_with_camera(CaptureCommandRun run,
                             const CameraChoice& choice,
                             const Progress& progress) {
-    if (choice.kind == CameraChoice::Kind::bench && !run.arguments.monitor.empty())
+    if (traits_of(choice).is_simulated && !run.arguments.monitor.empty())
         throw std::invalid_argument(
             "--monitor: found with a simulated bench, which has a projector of its own");
     CaptureBench bench = open_capture_bench(choice, run.request().product, progress);
@@ -226,9 +225,9 @@ Outcome capture_with_camera(CaptureCommandRun run,
     std::string shown_on = "its own projector";
     bool signal_is_fit = true;
     if (bench.show) {
-        BenchCalibrationRequest asked = request_of(bench.simulated->description(), bench.product);
+        CalibrationSettings asked = settings_of(bench.simulated->description(), bench.product);
         asked.camera_to_xyz = run.request().camera_to_xyz;
-        asked.colour_shots = run.request().colour_shots;
+        asked.shots = run.request().shots;
         asked.places = run.request().places;
         if (run.request().projector) asked.projector = run.request().projector;
         run.request() = std::move(asked);
@@ -253,7 +252,6 @@ Outcome capture_with_camera(CaptureCommandRun run,
     ports.show = bench.show;
     ports.photograph = patient(*bench.camera, progress, say_wait);
     ports.measure_xyz = bench.measure_xyz;
-    if (run.request().camera_to_xyz) ports.measure_xyz = {};
 
     if (run.arguments.fit_response)
         return fit_response(std::move(run), *bench.camera, ports, progress);
@@ -345,9 +343,10 @@ Outcome capture_by_hand(CaptureCommandRun run,
     run.request().width = projector.monitor().width;
     run.request().height = projector.monitor().height;
     run.request().made_with = "photographs in " + choice.what;
-    LiveOptions options = live_options_of(run.request());
-    std::vector<Pattern> patterns = place_patterns(options.places, options.width, options.height);
-    for (Pattern& pattern : colour_patterns(options.width, options.height, 0, 255))
+    const CalibrationSettings& settings = run.request();
+    std::vector<Pattern> patterns =
+        place_patterns(settings.places, settings.width, settings.height);
+    for (Pattern& pattern : colour_patterns(settings.width, settings.height, 0, 255))
         patterns.push_back(std::move(pattern));
     std::vector<std::string> roles;
     for (const Pattern& pattern : patterns) roles.push_back(pattern.role);
@@ -440,13 +439,13 @@ Command capture_command() {
             throw std::invalid_argument(
                 "--camera: found none, expected one (livery capture --list)");
         const CameraChoice choice = parse_camera_choice(arguments->camera);
-        const bool by_hand = choice.kind == CameraChoice::Kind::folder;
+        const bool by_hand = traits_of(choice).is_by_hand;
         if (arguments->out.empty() && !arguments->preflight_only && !by_hand &&
             !arguments->fit_response)
             throw std::invalid_argument("--out: found none, expected a folder for the photographs");
         const bool has_sheets = is_any_given(arguments->sheets);
         if (has_sheets) check_whole(arguments->sheets);
-        const bool finds = has_sheets || choice.kind == CameraChoice::Kind::bench;
+        const bool finds = has_sheets || traits_of(choice).is_simulated;
         if (!arguments->pose.empty() && arguments->product.empty() && !finds)
             throw std::invalid_argument("--pose: found without --product, the mock-up");
         if (!arguments->product.empty() && arguments->pose.empty() && !finds)
@@ -460,9 +459,9 @@ Command capture_command() {
         if (!arguments->product.empty()) run.request().product = find_product(arguments->product);
         if (!arguments->pose.empty()) run.request().projector = read_camera_file(arguments->pose);
         if (has_sheets) run.request().data_sheets = arguments->sheets;
-        run.request().colour_shots = arguments->effort == "quick"  ? 1
-                                     : arguments->effort == "best" ? 4
-                                                                   : 2;
+        run.request().shots = arguments->effort == "quick"  ? 1
+                              : arguments->effort == "best" ? 4
+                                                            : 2;
         if (!arguments->camera_to_xyz.empty())
             run.request().camera_to_xyz = read_camera_to_xyz(arguments->camera_to_xyz);
         return by_hand ? capture_by_hand(std::move(run), choice, progress)

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "calibration/correspondence/fringes.h"
+#include "calibration/correspondence/patterns.h"
 #include "cli/command.h"
 #include "scene/data_sheet.h"
 

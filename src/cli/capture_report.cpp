@@ -33,16 +33,12 @@ Json json_of(const std::vector<GradedFigure>& figures) {
 }
 
 void report_calibration(const StagedCalibration& run, const std::string& folder, Outcome& outcome) {
-    const BenchCalibration& made = *run.made;
+    const CalibrationResult& made = *run.made;
     const ColourCalibration& calibration = made.calibration;
     Json& figures = outcome.figures;
-    double capture_s = made.live.capture_seconds, camera_s = made.live.camera_seconds,
-           projector_s = made.live.projector_seconds;
+    const CaptureSeconds captured = made.all_captured();
     if (made.room) {
         const RoomGeometry& room = made.room->geometry;
-        capture_s += made.room->capture_seconds;
-        camera_s += made.room->camera_seconds;
-        projector_s += made.room->projector_seconds;
         figures["room"] = {{"median_px", room.median_px},
                            {"rms_px", room.rms_px},
                            {"rms_mm", room.rms_mm},
@@ -62,17 +58,17 @@ void report_calibration(const StagedCalibration& run, const std::string& folder,
     figures["condition_p99"] = calibration.condition_p99;
     figures["pixel_fractions"] = json_of(pixel_shares(calibration, {}));
     figures["warnings"] = calibration.warnings;
-    figures["capture_seconds"] = capture_s;
-    figures["camera_seconds"] = camera_s;
-    figures["projector_seconds"] = projector_s;
-    figures["latency_photographs"] = made.live.latency_photographs;
+    figures["capture_seconds"] = captured.all;
+    figures["camera_seconds"] = captured.camera;
+    figures["projector_seconds"] = captured.projector;
+    figures["latency_photographs"] = made.latency_photographs;
     outcome.text += fmt::format(
         "captured in {:.1f} s, of which {:.1f} s the camera's and {:.1f} s the projector's: "
         "{:.1f}% of the lit pixels valid, additivity error {:.2f}%, "
         "condition {:.2f}\n",
-        capture_s,
-        camera_s,
-        projector_s,
+        captured.all,
+        captured.camera,
+        captured.projector,
         100.0 * calibration.valid_fraction,
         100.0 * calibration.additivity_error,
         calibration.condition_p99);
@@ -84,7 +80,7 @@ void report_calibration(const StagedCalibration& run, const std::string& folder,
     } else {
         write_calibration(folder, calibration);
     }
-    write_origin(folder, origin_of(made, run.request));
+    write_origin(folder, origin_of(made, run.settings));
     figures["calibration"] = {{"id", calibration.id}, {"folder", folder}};
     outcome.text += fmt::format("calibration {} in {}\n", calibration.id, folder);
 }

@@ -11,7 +11,6 @@
 #include <glm/geometric.hpp>
 
 #include "calibration/geometry/board.h"
-#include "calibration/geometry/board_drawing.h"
 #include "cli/capture_options.h"
 #include "cli/command.h"
 #include "core/error.h"

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "calibration/correspondence/fringes.h"
+#include "calibration/correspondence/patterns.h"
 #include "capture/patterns_folder.h"
 #include "cli/capture_options.h"
 #include "cli/command.h"

@@ -8,8 +8,8 @@
 
 #include <fmt/format.h>
 
+#include "capture/camera.h"
 #include "capture/captures_folder.h"
-#include "capture/patient_camera.h"
 #include "capture/patterns_folder.h"
 #include "cli/capture_report.h"
 #include "cli/command.h"
@@ -43,7 +43,7 @@ OpenedBench open_bench(const std::string& camera,
                        std::shared_ptr<const Product> product,
                        const Progress& progress) {
     const CameraChoice choice = parse_camera_choice(camera);
-    if (choice.kind == CameraChoice::Kind::folder)
+    if (traits_of(choice).is_by_hand)
         throw std::invalid_argument("--camera: found a folder, expected a camera");
     OpenedBench opened;
     opened.bench = open_capture_bench(choice, std::move(product), progress);

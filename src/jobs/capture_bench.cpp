@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
+#include <iterator>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -11,7 +12,6 @@
 #include <fmt/format.h>
 
 #include "calibration/camera_response.h"
-#include "calibration/nothing_shown.h"
 #include "capture/camera.h"
 #include "capture/tethered_camera.h"
 #include "capture/transfer.h"
@@ -128,50 +128,43 @@ class BenchCamera : public Camera {
     double exposure_s_;
 };
 
-}  // namespace
+/// Everything that differs from one kind of camera to the next: another kind is another row.
+struct CameraKind {
+    std::string name;   ///< before the colon
+    std::string usage;  ///< behind it, as --camera's help has it
+    /// What is meant where nothing stands behind the colon; nothing: something must.
+    std::optional<std::string> by_default;
+    CameraTraits traits;
+    /// Sets the bench's camera, and what it brings along; null: it has no camera.
+    void (*open)(const std::string& what, CaptureBench& bench, const Progress& progress);
+    /// Those that could be chosen now; null: none can be listed.
+    std::vector<ListedCamera> (*list)();
+};
 
-CameraChoice parse_camera_choice(const std::string& text) {
-    const std::size_t colon = text.find(':');
-    const std::string kind = text.substr(0, colon);
-    const std::string what = colon == std::string::npos ? "" : text.substr(colon + 1);
-    if (kind == "bench") return {CameraChoice::Kind::bench, what.empty() ? "default" : what};
-    if (kind == "tethered") return {CameraChoice::Kind::tethered, what};
-    if (kind == "video" && !what.empty()) return {CameraChoice::Kind::video, what};
-    if (kind == "folder" && !what.empty()) return {CameraChoice::Kind::folder, what};
-    throw std::invalid_argument(
-        fmt::format("--camera: found \"{}\", expected bench[:NAME|FILE], tethered[:PORT], "
-                    "video:NUMBER|FILE|ADDRESS or folder:DIR",
-                    text));
+void open_bench_camera(const std::string& what, CaptureBench& bench, const Progress& progress) {
+    const BenchDescription description = read_bench_file(what);
+    if (!bench.product) bench.product = find_product(description.product.string());
+    bench.simulated = std::make_unique<Bench>(description, bench.product, progress);
+    bench.camera = std::make_unique<BenchCamera>(*bench.simulated);
+    const BenchPorts ports = bench.simulated->ports();
+    bench.show = ports.show;
+    bench.measure_xyz = ports.measure_xyz;
 }
 
-std::string text_of(const CameraChoice& choice) {
-    switch (choice.kind) {
-        case CameraChoice::Kind::bench:
-            return "bench:" + choice.what;
-        case CameraChoice::Kind::tethered:
-            return "tethered:" + choice.what;
-        case CameraChoice::Kind::video:
-            return "video:" + choice.what;
-        case CameraChoice::Kind::folder:
-            return "folder:" + choice.what;
-    }
-    throw std::invalid_argument("unknown kind of camera");
+std::vector<ListedCamera> listed_benches() {
+    std::vector<ListedCamera> cameras;
+    for (const std::string& bench : shipped_names("calibration"))
+        cameras.push_back({"bench:" + bench, "simulated bench " + bench, "", ""});
+    return cameras;
 }
 
-CameraChoice camera_at_address(const std::string& address) {
-    const auto follows = [&](const std::string& beginning) {
-        return address.starts_with(beginning) && address.size() > beginning.size();
-    };
-    if (follows("ptpip:")) return {CameraChoice::Kind::tethered, address};
-    for (const char* video : {"http://", "https://", "rtsp://"})
-        if (follows(video)) return {CameraChoice::Kind::video, address};
-    throw std::invalid_argument(fmt::format(
-        "address of a camera: found \"{}\", expected ptpip:HOST of a still camera, or http://… or "
-        "rtsp://… of a network camera",
-        address));
+void open_tethered(const std::string& what, CaptureBench& bench, const Progress&) {
+    TetheredOptions options;
+    options.port = what;
+    bench.camera = open_tethered_camera(options);
 }
 
-std::vector<ListedCamera> found_cameras() {
+std::vector<ListedCamera> listed_tethered() {
     std::vector<ListedCamera> cameras;
     for (const FoundCamera& found : list_tethered_cameras()) {
         ListedCamera camera{"tethered:" + found.port, found.model + " at " + found.port, "", ""};
@@ -181,6 +174,17 @@ std::vector<ListedCamera> found_cameras() {
         }
         cameras.push_back(std::move(camera));
     }
+    return cameras;
+}
+
+void open_video(const std::string& what, CaptureBench& bench, const Progress&) {
+    VideoCameraOptions options;
+    options.source = what;
+    bench.camera = open_video_camera(options);
+}
+
+std::vector<ListedCamera> listed_video() {
+    std::vector<ListedCamera> cameras;
     std::error_code error;
     for (int number = 0; number < 64; ++number) {
         const std::string device = fmt::format("/dev/video{}", number);
@@ -190,95 +194,96 @@ std::vector<ListedCamera> found_cameras() {
     return cameras;
 }
 
-std::vector<ListedCamera> list_cameras() {
-    std::vector<ListedCamera> cameras = found_cameras();
-    for (const std::string& bench : shipped_names("calibration"))
-        cameras.push_back({"bench:" + bench, "simulated bench " + bench, "", ""});
+const std::vector<CameraKind>& camera_kinds() {
+    static const std::vector<CameraKind> kinds = {
+        {"tethered", "[:PORT]", "", {}, open_tethered, listed_tethered},
+        {"video", ":NUMBER|FILE|ADDRESS", std::nullopt, {}, open_video, listed_video},
+        {"bench",
+         "[:NAME|FILE]",
+         "default",
+         {.is_simulated = true},
+         open_bench_camera,
+         listed_benches},
+        {"folder", ":DIR", std::nullopt, {.is_by_hand = true}, nullptr, nullptr},
+    };
+    return kinds;
+}
+
+const CameraKind* find_kind(const std::string& name) {
+    for (const CameraKind& kind : camera_kinds())
+        if (kind.name == name) return &kind;
+    return nullptr;
+}
+
+const CameraKind& kind_of(const CameraChoice& choice) {
+    const CameraKind* const kind = find_kind(choice.kind);
+    check_argument(kind != nullptr, "unknown kind of camera \"" + choice.kind + "\"");
+    return *kind;
+}
+
+}  // namespace
+
+std::string camera_usage() {
+    std::string usage;
+    for (std::size_t k = 0; k < camera_kinds().size(); ++k)
+        usage += (k == 0                          ? ""
+                  : k + 1 < camera_kinds().size() ? ", "
+                                                  : " or ") +
+                 camera_kinds()[k].name + camera_kinds()[k].usage;
+    return usage;
+}
+
+CameraChoice parse_camera_choice(const std::string& text) {
+    const std::size_t colon = text.find(':');
+    CameraChoice choice{text.substr(0, colon),
+                        colon == std::string::npos ? "" : text.substr(colon + 1)};
+    const CameraKind* const kind = find_kind(choice.kind);
+    if (!kind || (choice.what.empty() && !kind->by_default))
+        throw std::invalid_argument(
+            fmt::format("--camera: found \"{}\", expected {}", text, camera_usage()));
+    if (choice.what.empty()) choice.what = *kind->by_default;
+    return choice;
+}
+
+std::string text_of(const CameraChoice& choice) { return choice.kind + ":" + choice.what; }
+
+CameraTraits traits_of(const CameraChoice& choice) { return kind_of(choice).traits; }
+
+CameraChoice camera_at_address(const std::string& address) {
+    const auto follows = [&](const std::string& beginning) {
+        return address.starts_with(beginning) && address.size() > beginning.size();
+    };
+    if (follows("ptpip:")) return {"tethered", address};
+    for (const char* video : {"http://", "https://", "rtsp://"})
+        if (follows(video)) return {"video", address};
+    throw std::invalid_argument(fmt::format(
+        "address of a camera: found \"{}\", expected ptpip:HOST of a still camera, or http://… or "
+        "rtsp://… of a network camera",
+        address));
+}
+
+std::vector<ListedCamera> list_cameras(bool with_simulated) {
+    std::vector<ListedCamera> cameras;
+    for (const CameraKind& kind : camera_kinds()) {
+        if (!kind.list || (kind.traits.is_simulated && !with_simulated)) continue;
+        std::vector<ListedCamera> found = kind.list();
+        std::move(found.begin(), found.end(), std::back_inserter(cameras));
+    }
     return cameras;
 }
 
 CaptureBench open_capture_bench(const CameraChoice& choice,
                                 std::shared_ptr<const Product> product,
                                 const Progress& progress) {
+    const CameraKind& kind = kind_of(choice);
+    check_argument(kind.open != nullptr, "a " + kind.name + " has no camera");
     CaptureBench bench;
-    switch (choice.kind) {
-        case CameraChoice::Kind::bench: {
-            const BenchDescription description = read_bench_file(choice.what);
-            if (!product) product = find_product(description.product.string());
-            bench.product = product;
-            bench.simulated = std::make_unique<Bench>(description, std::move(product), progress);
-            bench.camera = std::make_unique<BenchCamera>(*bench.simulated);
-            const BenchPorts ports = bench.simulated->ports();
-            bench.show = ports.show;
-            bench.measure_xyz = ports.measure_xyz;
-            break;
-        }
-        case CameraChoice::Kind::tethered: {
-            TetheredOptions options;
-            options.port = choice.what;
-            bench.camera = open_tethered_camera(options);
-            break;
-        }
-        case CameraChoice::Kind::video: {
-            VideoCameraOptions options;
-            options.source = choice.what;
-            bench.camera = open_video_camera(options);
-            break;
-        }
-        case CameraChoice::Kind::folder:
-            throw std::invalid_argument("a folder has no camera");
-    }
+    if (kind.traits.is_simulated) bench.product = std::move(product);
+    kind.open(choice.what, bench, progress);
     bench.name = bench.camera->name();
     bench.curve = kept_camera_curve(*bench.camera);
     if (bench.curve) bench.camera->use_transfer(bench.curve->string());
     return bench;
-}
-
-PortSeconds run_recorded(Recording& recording,
-                         const BenchPorts& bench,
-                         const std::function<void(const BenchPorts&)>& work) {
-    // Until it is made anew it is not a whole captures folder.
-    std::error_code ignored;
-    std::filesystem::remove(recording.folder() / "manifest.json", ignored);
-    PortSeconds seconds;
-    BenchPorts ports = bench;
-    ports.show = [&](const Image8& drive) { timed(seconds.projector, [&] { bench.show(drive); }); };
-    ports.photograph = [&](double exposure_s) {
-        return timed(seconds.camera, [&] { return bench.photograph(exposure_s); });
-    };
-    try {
-        work(recording.ports(ports));
-        return seconds;
-    } catch (const CameraFault&) {
-        recording.flush();  // There is no photograph to blame.
-        throw;
-    } catch (const NothingShown& nothing) {
-        recording.drop_newest(nothing.pictures());
-        throw;
-    } catch (const Refused&) {
-        recording.drop_last();
-        throw;
-    } catch (const FileError&) {
-        recording.drop_last();
-        throw;
-    } catch (const Cancelled&) {
-        recording.flush();
-        throw;
-    }
-}
-
-LiveResult calibrate_recorded(Recording& recording,
-                              const BenchPorts& bench,
-                              const LiveOptions& options,
-                              const Progress& progress) {
-    LiveResult result;
-    const PortSeconds seconds = run_recorded(recording, bench, [&](const BenchPorts& ports) {
-        result = calibrate_live(ports, options, progress);
-    });
-    result.camera_seconds = seconds.camera;
-    result.projector_seconds = seconds.projector;
-    recording.write_manifest(options.width, options.height, result.kept);
-    return result;
 }
 
 }  // namespace livery

@@ -1,18 +1,13 @@
-// What a capture is made with: a camera of any kind with its curve, the simulated bench, and the
-// capture with everything kept.
+// What a capture is made with: a camera of any kind with its curve, and the simulated bench.
 #pragma once
 
-#include <chrono>
 #include <filesystem>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "calibration/colour/colour.h"
 #include "capture/camera.h"
-#include "capture/recording.h"
 #include "core/bench_ports.h"
 #include "core/progress.h"
 #include "scene/product.h"
@@ -34,17 +29,27 @@ struct CameraCurve {
 CameraCurve fit_camera_curve(
     Camera& camera, const BenchPorts& ports, int width, int height, const Progress& progress);
 
-/// As people write it: "bench" or "bench:NAME|FILE", "tethered" (the first on USB) or
-/// "tethered:PORT", "video:N|FILE|ADDRESS", "folder:DIR".
+/// As people write it, kind and what is behind the colon: "bench" or "bench:NAME|FILE", "tethered"
+/// (the first on USB) or "tethered:PORT", "video:N|FILE|ADDRESS", "folder:DIR".
 struct CameraChoice {
-    enum class Kind { bench, tethered, video, folder };
-    Kind kind = Kind::bench;
-    std::string what;  ///< behind the colon
+    std::string kind = "bench";
+    std::string what;
     bool operator==(const CameraChoice&) const = default;
 };
 /// Throws std::invalid_argument that says what there is.
 CameraChoice parse_camera_choice(const std::string& text);
 std::string text_of(const CameraChoice& choice);
+/// "tethered[:PORT], ... or folder:DIR": all kinds.
+std::string camera_usage();
+
+/// What its callers must know of a kind of camera.
+struct CameraTraits {
+    bool is_by_hand = false;    ///< somebody photographs, and copies the files into a folder
+    bool is_simulated = false;  ///< of a simulated bench, which has a projector of its own
+};
+/// Throws std::invalid_argument for a kind that there is not.
+CameraTraits traits_of(const CameraChoice& choice);
+
 /// Of a camera that no list can name, its address as people know it: "ptpip:HOST" or
 /// "ptpip:HOST:PORT" of a still camera, "http://..." or "rtsp://..." of a network camera's video.
 /// Throws std::invalid_argument that says what there is.
@@ -56,8 +61,7 @@ struct ListedCamera {
     std::string name;          ///< for people
     std::string problem, fix;  ///< why it cannot be used at the moment; empty: it can
 };
-std::vector<ListedCamera> list_cameras();
-std::vector<ListedCamera> found_cameras();  ///< the same without simulated benches
+std::vector<ListedCamera> list_cameras(bool with_simulated = true);
 
 struct CaptureBench {
     std::string name;  ///< of the camera, in words
@@ -74,40 +78,5 @@ struct CaptureBench {
 CaptureBench open_capture_bench(const CameraChoice& choice,
                                 std::shared_ptr<const Product> product,
                                 const Progress& progress);
-
-/// Adds the seconds that a call takes, also where it throws.
-template <typename Call>
-auto timed(double& seconds, const Call& call) {
-    const auto start = std::chrono::steady_clock::now();
-    struct Add {
-        double& seconds;
-        std::chrono::steady_clock::time_point start;
-        ~Add() {
-            seconds +=
-                std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-        }
-    } add{seconds, start};
-    return call();
-}
-
-/// Time within the camera's and the projector's ports.
-struct PortSeconds {
-    double camera = 0.0, projector = 0.0;
-};
-
-/// Runs `work` with the bench's ports through the recording. The photograph over which it fails (of
-/// another size, automatically exposed) is dropped, so that the next run takes it anew, as are
-/// those of pictures that are not known to have arrived (NothingShown); the others stay. The folder
-/// has no manifest.json until somebody writes it anew. Throws as `work` and Recording do.
-PortSeconds run_recorded(Recording& recording,
-                         const BenchPorts& bench,
-                         const std::function<void(const BenchPorts&)>& work);
-
-/// calibrate_live() that way. Afterwards the recording is a captures folder with its manifest.json.
-/// Throws as calibrate_live() and Recording do, and CameraFault.
-LiveResult calibrate_recorded(Recording& recording,
-                              const BenchPorts& bench,
-                              const LiveOptions& options,
-                              const Progress& progress = {});
 
 }  // namespace livery

@@ -1,49 +1,21 @@
 #include "jobs/captured_calibration.h"
 
 #include <algorithm>
-#include <cmath>
+#include <numeric>
 #include <set>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <glm/geometric.hpp>
 
 #include "calibration/captures/captures.h"
-#include "calibration/correspondence/fringes.h"
-#include "calibration/predict.h"
+#include "calibration/captures/identify.h"
+#include "calibration/correspondence/patterns.h"
 #include "capture/patterns_folder.h"
 #include "core/error.h"
 #include "core/image_io.h"
-#include "jobs/calibrate/shown_captures.h"
-#include "jobs/camera_to_xyz_file.h"
-#include "radiance/surface_map.h"
-#include "tracing/tracer.h"
 
 namespace livery {
-
-ImageF projector_irradiance(const Mesh& mesh, const View& projector, const Progress& progress) {
-    constexpr int kSamplesPerPixel = 16;
-    const Tracer tracer(mesh);
-    const SurfaceMap map = build_surface_map(mesh, tracer, projector, kSamplesPerPixel, progress);
-    const glm::dvec3 lamp = centre_in_world(projector);
-
-    ImageF irradiance(projector.width, projector.height, 1);
-    for (const Fragment& fragment : map.fragments) {
-        const glm::dvec3 to_lamp = lamp - glm::dvec3(fragment.position_mm);
-        const double distance2 = glm::dot(to_lamp, to_lamp);
-        // The mean of the normals is shorter than the unit mean normal by their scatter.
-        const double shorter = 1.0 / std::sqrt(1.0 + static_cast<double>(fragment.normal_variance));
-        const double cosine =
-            shorter * glm::dot(glm::dvec3(fragment.normal), to_lamp) / std::sqrt(distance2);
-        irradiance.values[fragment.pixel] += static_cast<float>(
-            static_cast<double>(fragment.coverage) * std::max(0.0, cosine) / distance2);
-    }
-    for (std::size_t i = 0; i < irradiance.values.size(); ++i) {
-        const float coverage = map.coverage.values[i];
-        irradiance.values[i] = coverage < 0.5f ? 0.0f : irradiance.values[i] / coverage;
-    }
-    return irradiance;
-}
 
 namespace {
 
@@ -60,11 +32,11 @@ std::optional<int> uniform_drive(const CapturesFolder& folder, const std::string
 /// shows another picture is told by how it follows the levels. Warns of files that are not there,
 /// and of photographs with roles that are no colours.
 std::vector<Pattern> patterns_shown(const CapturesFolder& folder,
-                                    const ColourOptions& options,
+                                    const CalibrationSettings& settings,
                                     std::vector<std::string>& warnings) {
     const int width = folder.projector_width, height = folder.projector_height;
     std::vector<Pattern> patterns =
-        colour_patterns(width, height, options.dark_drive, options.bright_drive);
+        colour_patterns(width, height, settings.dark_drive, settings.bright_drive);
     std::set<std::string> roles, replaced, others;
     for (const Capture& capture : folder.captures) roles.insert(capture.role);
     for (Pattern& mosaic : mosaic_patterns(width, height, kMosaics)) {
@@ -113,33 +85,32 @@ std::vector<Pattern> patterns_shown(const CapturesFolder& folder,
 }
 
 /// Of a capture that was made in stages, the folder with the colours and their map.
-CapturedCalibrationRequest of_its_colours(CapturedCalibrationRequest request) {
+CalibrationPhotographs of_its_colours(CalibrationPhotographs taken) {
     std::error_code error;
-    const auto colours = request.captures / "colour";
-    if (std::filesystem::exists(request.captures / "manifest.json", error) ||
+    const auto colours = taken.folder / "colour";
+    if (std::filesystem::exists(taken.folder / "manifest.json", error) ||
         !std::filesystem::exists(colours / "manifest.json", error))
-        return request;
-    request.captures = colours;
-    if (!request.map && std::filesystem::exists(colours / "map.exr", error))
-        request.map = colours / "map.exr";
-    return request;
+        return taken;
+    taken.folder = colours;
+    if (!taken.map && std::filesystem::exists(colours / "map.exr", error))
+        taken.map = colours / "map.exr";
+    return taken;
 }
 
 }  // namespace
 
-ColourCalibration calibrate_from_folder(const CapturedCalibrationRequest& asked,
+ColourCalibration calibrate_from_folder(const CalibrationPhotographs& asked,
+                                        CalibrationSettings settings,
                                         const Progress& progress) {
-    const CapturedCalibrationRequest request = of_its_colours(asked);
-    std::vector<std::string> warnings;
+    const CalibrationPhotographs taken = of_its_colours(asked);
     const CapturesFolder folder = read_shown_captures(
-        request.captures, PhotographUse::light, request.patterns_manifest, warnings, progress);
-    const int width = folder.projector_width, height = folder.projector_height;
+        taken.folder, PhotographUse::light, taken.patterns_manifest, settings.warnings, progress);
     std::vector<std::string> geometry;
     for (const Capture& capture : folder.captures) {
         if (is_geometry_role(capture.role)) geometry.push_back(capture.role);
     }
     if (geometry.size() == folder.captures.size()) {
-        throw FileError(request.captures,
+        throw FileError(taken.folder,
                         "captures",
                         std::to_string(geometry.size()) +
                             (std::any_of(geometry.begin(), geometry.end(), is_fringe_role)
@@ -148,39 +119,27 @@ ColourCalibration calibrate_from_folder(const CapturedCalibrationRequest& asked,
                         "photographs of the colour patterns too (livery patterns --kind all or "
                         "color), with their roles in manifest.json");
     }
-    if (!request.map && geometry.empty()) {
-        throw FileError(request.captures,
+    if (!taken.map && geometry.empty()) {
+        throw FileError(taken.folder,
                         "captures",
                         "no Gray code photographs",
                         "Gray code photographs, or --map FILE.exr");
     }
 
-    LiveOptions options;
-    options.width = width;
-    options.height = height;
-    ColourOptions& colour = options.colour;
-    colour.mode = request.mode;
-    colour.camera_to_xyz =
-        request.camera_to_xyz ? read_camera_to_xyz(*request.camera_to_xyz) : assumed_rec709();
-    colour.made_with = "photographs in " + request.captures.string();
-    colour.dark_drive = uniform_drive(folder, "dark-gray").value_or(colour.dark_drive);
-    colour.bright_drive = uniform_drive(folder, "bright-gray").value_or(colour.bright_drive);
-    if (request.map) {
-        options.map = read_map(*request.map, width, height);
+    settings.width = folder.projector_width;
+    settings.height = folder.projector_height;
+    settings.shots = 1;
+    settings.made_with = "photographs in " + taken.folder.string();
+    settings.dark_drive = uniform_drive(folder, "dark-gray").value_or(settings.dark_drive);
+    settings.bright_drive = uniform_drive(folder, "bright-gray").value_or(settings.bright_drive);
+    if (taken.map) {
+        settings.map = read_map(*taken.map, settings.width, settings.height);
     } else {
-        check_gray_code(folder.folder, geometry, width, height);
-        if (check_fringes(folder.folder, geometry)) options.places = PlaceCode::gray_and_phase;
+        check_gray_code(folder.folder, geometry, settings.width, settings.height);
+        if (check_fringes(folder.folder, geometry)) settings.places = PlaceCode::gray_and_phase;
     }
-    options.patterns = patterns_shown(folder, colour, warnings);
-    ColourCalibration calibration = calibrate_live(ports_of(folder), options, progress).calibration;
-    if (!warnings.empty()) {
-        calibration.warnings.insert(calibration.warnings.end(), warnings.begin(), warnings.end());
-        seal(calibration);
-    }
-    if (!request.product || !request.projector) return calibration;
-    return predict_hidden(
-        std::move(calibration),
-        projector_irradiance(request.product->mesh, *request.projector, progress));
+    settings.patterns = patterns_shown(folder, settings, settings.warnings);
+    return calibrate_through_ports(ports_of(folder), std::move(settings), progress).calibration;
 }
 
 ProjectorToCamera read_map(const std::filesystem::path& file,
@@ -208,6 +167,124 @@ void write_map(const std::filesystem::path& file, const ProjectorToCamera& map) 
     ImageF picture = map.camera_px;
     for (float& value : picture.values) value -= 0.5f;
     write_exr(file, picture, {"X", "Y"});
+}
+
+namespace {
+
+constexpr std::size_t kMostNamedPhotographs = 4;
+
+Glimpse glimpse_at(const Capture& capture) { return glimpse_of(load_photograph(capture)); }
+
+/// White and black, and the first and the last pair of stripes: enough to see that a row of files
+/// is shifted or turned round.
+std::vector<std::size_t> telling_places(const std::vector<Capture>& captures) {
+    std::vector<std::size_t> places;
+    const auto add = [&](std::size_t place) {
+        if (std::find(places.begin(), places.end(), place) == places.end()) places.push_back(place);
+    };
+    std::size_t last_inverse = 0;
+    for (std::size_t k = 0; k < captures.size(); ++k) {
+        const std::string& role = captures[k].role;
+        if (role == "white" || role == "black") add(k);
+        if (!role.ends_with("-inverse") || k == 0) continue;
+        if (last_inverse == 0) {
+            add(k - 1);
+            add(k);
+        }
+        last_inverse = k;
+    }
+    if (last_inverse > 0) {
+        add(last_inverse - 1);
+        add(last_inverse);
+    }
+    std::sort(places.begin(), places.end());
+    return places;
+}
+
+struct Looked {
+    IdentifiedPhotographs found;
+    bool alike = true;  ///< in size
+};
+Looked look_at(const std::vector<Capture>& captures,
+               const std::vector<std::size_t>& photographs,
+               const std::vector<std::string>& roles,
+               const Progress& progress) {
+    std::vector<Glimpse> glimpses;
+    for (const std::size_t place : photographs) {
+        progress.check_stop();
+        progress.update(0.0, "looking at " + captures[place].file.filename().string());
+        glimpses.push_back(glimpse_at(captures[place]));
+        if (glimpses.back().values.size() != glimpses.front().values.size()) return {{}, false};
+    }
+    return {identify(glimpses, roles), true};
+}
+
+/// The photograph of one capture for the picture of another.
+Capture with_role_of(Capture photograph, const Capture& picture) {
+    photograph.role = picture.role;
+    photograph.pattern = picture.pattern;
+    photograph.drive = picture.drive;
+    return photograph;
+}
+
+}  // namespace
+
+CapturesFolder read_shown_captures(const std::filesystem::path& path,
+                                   PhotographUse use,
+                                   const std::filesystem::path& patterns_manifest,
+                                   std::vector<std::string>& warnings,
+                                   const Progress& progress) {
+    CapturesFolder folder = read_captures_folder(path, use, patterns_manifest);
+    std::error_code error;
+    if (std::filesystem::exists(path / "manifest.json", error)) return folder;
+    const std::vector<Capture>& captures = folder.captures;
+    const auto roles_at = [&](const std::vector<std::size_t>& places) {
+        std::vector<std::string> roles;
+        for (const std::size_t place : places) roles.push_back(captures[place].role);
+        return roles;
+    };
+    const std::vector<std::size_t> some = telling_places(captures);
+    const Looked first = look_at(captures, some, roles_at(some), progress);
+    const bool holds =
+        first.found.complete() && first.found.odd.empty() && first.found.out_of_order.empty();
+    if (holds || !first.alike) return folder;
+
+    std::vector<std::string> names;
+    for (const Capture& capture : captures) names.push_back(capture.file.filename().string());
+    const std::vector<std::size_t> order = order_of_names(names);
+    std::vector<std::size_t> all(captures.size());
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    const Looked looked = look_at(captures, order, roles_at(all), progress);
+    if (!looked.alike) return folder;
+    if (!looked.found.complete()) {
+        for (std::size_t k = 0; k < std::min(looked.found.odd.size(), kMostNamedPhotographs); ++k)
+            warnings.push_back(fmt::format(
+                "{} {}", names[order[looked.found.odd[k].photograph]], looked.found.odd[k].why));
+        return folder;
+    }
+    CapturesFolder shown = folder;
+    shown.captures.clear();
+    std::vector<std::size_t> role_of(captures.size(), captures.size());
+    for (std::size_t role = 0; role < captures.size(); ++role)
+        role_of[*looked.found.photograph_of_role[role]] = role;
+    std::string moved;
+    std::size_t count = 0;
+    for (std::size_t taken = 0; taken < order.size(); ++taken) {
+        const std::size_t role = role_of[taken];
+        shown.captures.push_back(with_role_of(captures[order[taken]], captures[role]));
+        if (role == order[taken]) continue;
+        if (++count <= kMostNamedPhotographs)
+            moved += fmt::format(
+                "{}{} shows {}", count == 1 ? "" : ", ", names[order[taken]], captures[role].role);
+    }
+    if (count > 0)
+        warnings.push_back(
+            fmt::format("{} photographs are in another order than the pictures and were "
+                        "recognised by what they show: {}{}",
+                        count,
+                        moved,
+                        count > kMostNamedPhotographs ? ", …" : ""));
+    return shown;
 }
 
 }  // namespace livery

@@ -2,37 +2,26 @@
 #pragma once
 
 #include <filesystem>
-#include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
-#include "calibration/colour/colour.h"
 #include "capture/captures_folder.h"
-#include "core/image.h"
 #include "core/progress.h"
-#include "mesh/mesh.h"
-#include "scene/colour_calibration.h"
-#include "scene/product.h"
-#include "scene/view.h"
+#include "jobs/calibrate/bench_calibration.h"
 
 namespace livery {
 
-/// cos(theta) / distance^2 (1/mm^2) of the surface that each projector pixel lights, its mean over
-/// the lit part of the pixel; one channel, 0 where the mesh covers less than half of the pixel.
-ImageF projector_irradiance(const Mesh& mesh, const View& projector, const Progress& progress = {});
-
-struct CapturedCalibrationRequest {
-    std::filesystem::path captures;            ///< or the folder of a capture in stages
+struct CalibrationPhotographs {
+    std::filesystem::path folder;              ///< or the folder of a capture in stages
     std::filesystem::path patterns_manifest;   ///< for folders without a manifest of their own
     std::optional<std::filesystem::path> map;  ///< else decoded from the same folder
-    std::optional<std::filesystem::path> camera_to_xyz;
-    ColourMode mode = ColourMode::robust;
-    /// With both, pixels that the camera does not see are predicted (calibration/predict.h).
-    std::shared_ptr<const Product> product;
-    std::optional<View> projector;  ///< world: the product's frame
 };
 
-/// Throws FileError, Refused, std::invalid_argument.
-ColourCalibration calibrate_from_folder(const CapturedCalibrationRequest& request,
+/// Of the settings count those of the colours' fit and of where everything stands; what was shown
+/// is read in the folder. Throws FileError, Refused, std::invalid_argument.
+ColourCalibration calibrate_from_folder(const CalibrationPhotographs& taken,
+                                        CalibrationSettings settings = {},
                                         const Progress& progress = {});
 
 /// `--map` files: EXR in projector pixels, channels X,Y = camera pixel (OpenCV centres), NaN where
@@ -41,5 +30,15 @@ ProjectorToCamera read_map(const std::filesystem::path& file,
                            int projector_width,
                            int projector_height);
 void write_map(const std::filesystem::path& file, const ProjectorToCamera& map);
+
+/// read_captures_folder(). Where there is no manifest.json, the order of the files' names is
+/// checked at some of the photographs, and where it does not hold, all are looked at (identify())
+/// and get the roles that they show; `warnings` then names those that are out of order, or those
+/// that show none of the pictures. Throws FileError, Refused, Cancelled.
+CapturesFolder read_shown_captures(const std::filesystem::path& folder,
+                                   PhotographUse use,
+                                   const std::filesystem::path& patterns_manifest,
+                                   std::vector<std::string>& warnings,
+                                   const Progress& progress = {});
 
 }  // namespace livery

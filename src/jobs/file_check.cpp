@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <functional>
 #include <new>
 #include <set>
+#include <string>
+#include <vector>
 
 #include "appearance/directions.h"
 #include "appearance/material_library.h"
@@ -15,20 +18,18 @@
 #include "appearance/subsurface/translucent_material.h"
 #include "calibration/captures/captures.h"
 #include "calibration/registration/picked_points.h"
+#include "calibration/settings.h"
 #include "capture/captures_folder.h"
-#include "capture/environment_folder.h"
 #include "capture/patterns_folder.h"
-#include "capture/sphere_folder.h"
-#include "capture/spot_folder.h"
+#include "capture/stand_folders.h"
 #include "compensation/lit_pixels.h"
 #include "core/error.h"
 #include "core/image_io.h"
 #include "core/json.h"
 #include "core/paths.h"
 #include "core/text/csv.h"
+#include "core/utf8.h"
 #include "jobs/calibrate/calibration_folder.h"
-#include "jobs/camera_to_xyz_file.h"
-#include "jobs/files_elsewhere.h"
 #include "jobs/pair_geometry.h"
 #include "jobs/registration.h"
 #include "scene/colour_calibration.h"
@@ -44,6 +45,64 @@
 namespace livery {
 
 namespace {
+
+/// Collects what a file in `folder` reads. Links count as where they lead.
+class FilesElsewhere {
+  public:
+    explicit FilesElsewhere(const std::filesystem::path& folder);
+
+    /// Nothing for files below the folder or among the shipped data.
+    void add(const std::filesystem::path& file);
+    /// "reads A and B, which lie elsewhere"; empty when there is none.
+    std::string note() const;
+
+  private:
+    std::filesystem::path folder_, shipped_;
+    std::vector<std::string> files_;
+    std::size_t count_ = 0;
+};
+
+using Path = std::filesystem::path;
+
+constexpr std::size_t kMostNamed = 5;
+
+Path resolved(const Path& path) {
+    std::error_code error;
+    const Path absolute = std::filesystem::absolute(path, error);
+    const Path canonical = std::filesystem::weakly_canonical(absolute, error);
+    return error ? absolute.lexically_normal() : canonical;
+}
+
+bool is_below(const Path& file, const Path& folder) {
+    const auto part = std::mismatch(folder.begin(), folder.end(), file.begin(), file.end()).first;
+    return !folder.empty() && part == folder.end();
+}
+
+FilesElsewhere::FilesElsewhere(const Path& folder)
+    : folder_(resolved(folder.empty() ? Path(".") : folder)) {
+    try {
+        shipped_ = resolved(shipped_path("materials")).parent_path();
+    } catch (const FileError&) {
+        // Without shipped data nothing lies among them.
+    }
+}
+
+void FilesElsewhere::add(const Path& file) {
+    if (file.empty()) return;
+    const Path place = resolved(file);
+    if (is_below(place, folder_) || is_below(place, shipped_)) return;
+    const std::string name = printable(place.string(), 200);
+    if (std::find(files_.begin(), files_.end(), name) != files_.end()) return;
+    ++count_;
+    if (files_.size() < kMostNamed) files_.push_back(name);
+}
+
+std::string FilesElsewhere::note() const {
+    if (files_.empty()) return "";
+    std::string text = "reads " + list_of(files_);
+    if (count_ > files_.size()) text += " and " + std::to_string(count_ - files_.size()) + " more";
+    return text + (count_ == 1 ? ", which lies elsewhere" : ", which lie elsewhere");
+}
 
 using Path = std::filesystem::path;
 

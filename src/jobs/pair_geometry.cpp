@@ -11,12 +11,12 @@
 #include "calibration/captures/captures.h"
 #include "calibration/correspondence/fringe_decode.h"
 #include "calibration/geometry/board_sight.h"
-#include "calibration/geometry/leave_one_out.h"
+#include "calibration/geometry/solve_pair.h"
 #include "calibration/registration/pair_pose.h"
 #include "capture/captures_folder.h"
 #include "core/error.h"
 #include "core/statistics.h"
-#include "jobs/calibrate/shown_captures.h"
+#include "jobs/captured_calibration.h"
 
 namespace livery {
 

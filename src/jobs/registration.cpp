@@ -6,12 +6,12 @@
 #include <glm/geometric.hpp>
 
 #include "calibration/captures/captures.h"
-#include "calibration/correspondence/fringes.h"
+#include "calibration/correspondence/patterns.h"
 #include "capture/captures_folder.h"
 #include "core/error.h"
 #include "core/image_io.h"
 #include "core/paths.h"
-#include "jobs/calibrate/shown_captures.h"
+#include "jobs/captured_calibration.h"
 #include "jobs/pair_geometry.h"
 #include "mesh/ply_write.h"
 

@@ -14,7 +14,6 @@
 #include "core/json.h"
 #include "core/progress.h"
 #include "twin/description.h"
-#include "twin/mirror_ball_stand.h"
 #include "twin/sphere_stand.h"
 #include "twin/spot_stand.h"
 

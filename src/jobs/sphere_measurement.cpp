@@ -9,12 +9,12 @@
 #include <glm/matrix.hpp>
 
 #include "appearance/measured/measured_samples.h"
-#include "capture/sphere_folder.h"
+#include "calibration/settings.h"
+#include "capture/stand_folders.h"
 #include "core/colour.h"
 #include "core/error.h"
 #include "core/paths.h"
 #include "core/worst_error.h"
-#include "jobs/camera_to_xyz_file.h"
 #include "jobs/merged_captures.h"
 
 namespace livery {

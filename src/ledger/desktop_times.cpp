@@ -338,7 +338,8 @@ std::vector<LedgerEffect> measure_desktop(GlDevice device, const Progress& progr
     {
         Bench bench(read_bench_file("default"), desktop.product, progress);
         const auto calibrate = [&](const Progress& stop) {
-            calibrate_through_ports(bench, desktop.product, stop);
+            calibrate_through_ports(
+                bench.ports(), settings_of(bench.description(), desktop.product), stop);
         };
         measure("while the bench calibrates", {1, calibrate}, nothing);
     }

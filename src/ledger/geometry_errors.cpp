@@ -172,7 +172,8 @@ GeometryErrorLedger measure_geometry_errors(GlDevice device,
     const Belief truth{description.projector.view, find_product(description.product.string())};
     Bench bench(description, truth.product, progress, EyePicture::traced);
     const ColourCalibration calibration =
-        calibrate_through_ports(bench, truth.product, progress).calibration;
+        calibrate_through_ports(bench.ports(), settings_of(description, truth.product), progress)
+            .calibration;
     const double white_y = design_white_luminance(
         calibration, kDesignWhitePercentile, mockup_mask(truth.product->mesh, truth.projector));
     const CompensationTable table = bake(calibration, white_y);

@@ -14,7 +14,7 @@
 
 #include "core/bench_ports.h"
 #include "core/image.h"
-#include "jobs/picture.h"
+#include "jobs/comparison.h"
 #include "mesh/mesh.h"
 #include "scene/product.h"
 #include "twin/description.h"

@@ -4,11 +4,12 @@
 #include <thread>
 #include <utility>
 
-#include "capture/patient_camera.h"
+#include "capture/camera.h"
 #include "core/error.h"
 #include "core/hash.h"
 #include "core/memory.h"
 #include "core/paths.h"
+#include "core/time.h"
 #include "jobs/capture_bench.h"
 #include "live/capture_work.h"
 #include "live/low_priority.h"
@@ -89,7 +90,7 @@ void CaptureThread::Implementation::open(const CaptureSetup& with) {
         show_state();
         publish([&](CaptureView& view) {
             view.camera = bench.name;
-            view.may_have_curve = setup.camera.kind != CameraChoice::Kind::bench;
+            view.may_have_curve = !traits_of(setup.camera).is_simulated;
             if (bench.curve) view.curve = "the curve kept in " + bench.curve->string();
         });
     });

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "calibration/correspondence/fringes.h"
+#include "calibration/correspondence/patterns.h"
 #include "core/bench_ports.h"
 #include "core/grade.h"
 #include "core/image.h"

@@ -16,7 +16,6 @@
 #include "core/statistics.h"
 #include "jobs/calibrate/calibration_check.h"
 #include "jobs/calibrate/calibration_folder.h"
-#include "jobs/calibrate/calibration_grade.h"
 #include "jobs/capture_bench.h"
 #include "jobs/watched_captures.h"
 #include "live/projector_setup.h"
@@ -179,7 +178,7 @@ CaptureStep photographed_last(const CaptureView& view) {
     return view.doing_step == CaptureStep::geometry ? CaptureStep::geometry : CaptureStep::colour;
 }
 
-bool asks_for_the_same(const BenchCalibrationRequest& a, const BenchCalibrationRequest& b) {
+bool asks_for_the_same(const CalibrationSettings& a, const CalibrationSettings& b) {
     return a.made_with == b.made_with && a.width == b.width && a.height == b.height &&
            a.projector == b.projector && a.product == b.product && a.data_sheets == b.data_sheets &&
            a.turned_as == b.turned_as && a.places == b.places;
@@ -195,7 +194,7 @@ std::vector<GradedFigure> compared_with(const std::filesystem::path& kept,
                                                   *projector,
                                                   run.made->calibration,
                                                   *run.made->projector,
-                                                  run.request.product->mesh));
+                                                  run.settings.product->mesh));
     } catch (const FileError& error) {
         log_line(LogLevel::warning, error.what());  // One that is gone is no fault of the new one.
     } catch (const Refused& refused) {
@@ -216,10 +215,10 @@ DriftSource drift_source(const std::filesystem::path& calibration, const Product
     return {*origin->ends, mockup_mask(product.mesh, *projector)};
 }
 
-BenchCalibrationRequest CaptureThread::Implementation::request() const {
-    BenchCalibrationRequest request;
+CalibrationSettings CaptureThread::Implementation::request() const {
+    CalibrationSettings request;
     if (bench.simulated) {
-        request = request_of(bench.simulated->description(), bench.product);
+        request = settings_of(bench.simulated->description(), bench.product);
         request.made_with = bench.name + ", its own projector";
     } else {
         request.product = setup.product;
@@ -230,17 +229,16 @@ BenchCalibrationRequest CaptureThread::Implementation::request() const {
                             ", " + setup.projector;
     }
     if (setup.projector_view) request.projector = setup.projector_view;
-    request.colour_shots = setup.colour_shots;
+    request.shots = setup.colour_shots;
     request.places = setup.places;
     return request;
 }
 
 void CaptureThread::Implementation::preflight_now() {
     publish([](CaptureView& view) { view.step(CaptureStep::look).figures.clear(); });
-    const BenchCalibrationRequest what = request();
-    const LiveOptions options = live_options_of(what);
+    const CalibrationSettings what = request();
     preflight(ports(),
-              {options.width, options.height, options.mockup},
+              {what.width, what.height, mockup_of(what)},
               progress(),
               [this](const GradedFigure& figure) {
                   publish([&](CaptureView& view) {
@@ -250,7 +248,7 @@ void CaptureThread::Implementation::preflight_now() {
 }
 
 void CaptureThread::Implementation::fit_curve() {
-    const BenchCalibrationRequest what = request();
+    const CalibrationSettings what = request();
     const CameraCurve curve =
         fit_camera_curve(*bench.camera, ports(), what.width, what.height, progress());
     publish([&](CaptureView& view) {
@@ -301,7 +299,7 @@ void CaptureThread::Implementation::find_geometry_now(const std::vector<std::siz
     find_geometry(run, ports(), meet(again), progress());
     const RoomGeometry& room = run.room->geometry;
     const auto finding = std::make_shared<Image8>(
-        outline_on_photograph(white, room.camera, run.request.product->mesh, kLiveWidth_px));
+        outline_on_photograph(white, room.camera, run.settings.product->mesh, kLiveWidth_px));
     publish([&](CaptureView& view) {
         CaptureStepView& step = view.step(CaptureStep::geometry);
         step.figures = grade_figures(room);
@@ -312,7 +310,7 @@ void CaptureThread::Implementation::find_geometry_now(const std::vector<std::siz
 
 void CaptureThread::Implementation::find_colours_now(const std::vector<std::size_t>& again) {
     check_calibrations_folder();
-    if (finds_room(run.request) && !run.room) {
+    if (finds_room(run.settings) && !run.room) {
         find_geometry_now(again);
         publish([](CaptureView& view) { view.step(CaptureStep::geometry).done = true; });
     }
@@ -321,14 +319,15 @@ void CaptureThread::Implementation::find_colours_now(const std::vector<std::size
 }
 
 void CaptureThread::Implementation::finish() {
-    const BenchCalibration& made = *run.made;
-    const auto kept = keep_calibration(made, run.request);
-    const Image8 mockup = made.projector && run.request.product
-                              ? mockup_mask(run.request.product->mesh, *made.projector)
+    const CalibrationResult& made = *run.made;
+    const auto kept = keep_calibration(made, run.settings);
+    const Image8 mockup = made.projector && run.settings.product
+                              ? mockup_mask(run.settings.product->mesh, *made.projector)
                               : Image8();
     const auto finding =
         std::make_shared<Image8>(status_picture(made.calibration, mockup, kLiveWidth_px));
     const auto figures = grade_figures(made.calibration);
+    const CaptureSeconds captured = made.all_captured();
     publish([&](CaptureView& view) {
         CaptureStepView& step = view.step(CaptureStep::colour);
         step.figures = figures;
@@ -336,14 +335,9 @@ void CaptureThread::Implementation::finish() {
         step.finding_of = "Measured green, predicted blue, none red";
         view.finished = kept;
         view.compared.clear();
-        view.capture_s = made.live.capture_seconds;
-        view.camera_s = made.live.camera_seconds;
-        view.projector_s = made.live.projector_seconds;
-        if (run.room) {
-            view.capture_s += run.room->capture_seconds;
-            view.camera_s += run.room->camera_seconds;
-            view.projector_s += run.room->projector_seconds;
-        }
+        view.capture_s = captured.all;
+        view.camera_s = captured.camera;
+        view.projector_s = captured.projector;
     });
 }
 
@@ -393,26 +387,26 @@ void CaptureThread::Implementation::find_mockup_now(const std::filesystem::path&
 /// What is asked of a step follows from the set-up as it is now.
 void CaptureThread::Implementation::show_steps() {
     if (setup.width == 0 && !bench.simulated) return;
-    BenchCalibrationRequest now = request();
-    if (!asks_for_the_same(now, run.request)) run = {};
+    CalibrationSettings now = request();
+    if (!asks_for_the_same(now, run.settings)) run = {};
     run.folder = folder(now.made_with);
-    run.request = std::move(now);
+    run.settings = std::move(now);
     const double each_s = times.photographs > 0 ? times.seconds / times.photographs : 0.0;
     publish([&](CaptureView& view) {
         // Photographs in a folder come from a camera that nobody can look through, all at once
         view.step(CaptureStep::look).called_for = !is_by_hand();
         view.step(CaptureStep::look).done = !view.step(CaptureStep::look).figures.empty();
-        view.step(CaptureStep::geometry).called_for = finds_room(run.request) && !is_by_hand();
+        view.step(CaptureStep::geometry).called_for = finds_room(run.settings) && !is_by_hand();
         view.step(CaptureStep::geometry).done = run.room.has_value();
         view.step(CaptureStep::colour).done = run.made.has_value();
         view.step(CaptureStep::check).called_for =
             !is_by_hand() &&
-            (run.made ? can_check(run) : run.request.projector || finds_room(run.request));
+            (run.made ? can_check(run) : run.settings.projector || finds_room(run.settings));
         view.step(CaptureStep::check).done = run.check.has_value();
         for (const auto& [step, stage] : kPhotographed) {
             CaptureStepView& shown = view.step(step);
             shown.can_go_on = can_go_on(run, stage);
-            shown.expected_s = each_s * expected_photographs(run.request, stage);
+            shown.expected_s = each_s * expected_photographs(run.settings, stage);
             if (shown.done) continue;
             shown.figures.clear();
             shown.finding.reset();
@@ -475,9 +469,10 @@ void CaptureThread::Implementation::show_by_hand(const std::vector<Pattern>& pat
 
 void CaptureThread::Implementation::capture_by_hand() {
     check_calibrations_folder();
-    const LiveOptions options = live_options_of(run.request);
-    std::vector<Pattern> patterns = place_patterns(options.places, options.width, options.height);
-    for (Pattern& pattern : colour_patterns(options.width, options.height, 0, 255))
+    const CalibrationSettings& settings = run.settings;
+    std::vector<Pattern> patterns =
+        place_patterns(settings.places, settings.width, settings.height);
+    for (Pattern& pattern : colour_patterns(settings.width, settings.height, 0, 255))
         patterns.push_back(std::move(pattern));
     std::vector<std::string> roles;
     for (const Pattern& pattern : patterns) roles.push_back(pattern.role);
@@ -491,7 +486,7 @@ void CaptureThread::Implementation::capture_by_hand() {
         told.update(static_cast<double>(state.found) / static_cast<double>(state.wanted),
                     text_of(state));
     });
-    run.made = calibrate_through_ports(files, run.request, told);
+    run.made = calibrate_through_ports(files, run.settings, told);
     run.room = run.made->room;
     finish();
 }

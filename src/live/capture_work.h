@@ -66,7 +66,7 @@ CaptureView::Doing doing_of(CaptureStep step);
 CaptureStep photographed_last(const CaptureView& view);
 
 /// Whether what was found for one holds for the other.
-bool asks_for_the_same(const BenchCalibrationRequest& a, const BenchCalibrationRequest& b);
+bool asks_for_the_same(const CalibrationSettings& a, const CalibrationSettings& b);
 
 /// The run's calibration against one that is kept; nothing where there is none, or they cannot be
 /// compared.
@@ -133,7 +133,7 @@ struct CaptureThread::Implementation {
     MeetRecording meet(const std::vector<std::size_t>& again);
     void show_by_hand(const std::vector<Pattern>& patterns);
     BenchPorts ports();
-    BenchCalibrationRequest request() const;
+    CalibrationSettings request() const;
     void finish();
     void wait_while_paused() const;
     void look_at(Recording& recording);
@@ -147,7 +147,7 @@ struct CaptureThread::Implementation {
     /// Runs what was asked for, and says what became of it.
     template <typename Work>
     void attempt(CaptureView::Doing doing, const Work& work);
-    bool is_by_hand() const { return setup.camera.kind == CameraChoice::Kind::folder; }
+    bool is_by_hand() const { return traits_of(setup.camera).is_by_hand; }
 };
 
 }  // namespace livery

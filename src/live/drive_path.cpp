@@ -13,7 +13,7 @@
 #include "core/recycler.h"
 #include "gl/draw.h"
 #include "gl/timer.h"
-#include "jobs/picture.h"
+#include "jobs/comparison.h"
 
 namespace livery {
 

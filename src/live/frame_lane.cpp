@@ -17,7 +17,7 @@
 #include "appearance/subsurface/translucent_paint.h"
 #include "core/error.h"
 #include "core/time.h"
-#include "jobs/picture.h"
+#include "jobs/comparison.h"
 
 namespace livery {
 

@@ -396,23 +396,23 @@ std::filesystem::path calibrate_on_bench(Bench& bench,
                                          std::shared_ptr<const Product> product,
                                          const Progress& progress) {
     check_calibrations_folder();  // Before the work.
-    const BenchCalibrationRequest request = request_of(bench.description(), std::move(product));
-    const BenchCalibration found = calibrate_through_ports(bench.ports(), request, progress);
+    const CalibrationSettings settings = settings_of(bench.description(), std::move(product));
+    const CalibrationResult found = calibrate_through_ports(bench.ports(), settings, progress);
     progress.update(1.0, "keeping the calibration");
-    return keep_calibration(found, request);
+    return keep_calibration(found, settings);
 }
 
 void check_calibrations_folder() { make_output_folder(calibrations_folder()); }
 
-std::filesystem::path keep_calibration(const BenchCalibration& made,
-                                       const BenchCalibrationRequest& request) {
+std::filesystem::path keep_calibration(const CalibrationResult& made,
+                                       const CalibrationSettings& settings) {
     return keep([&](const std::filesystem::path& folder) {
         if (made.projector) {
             write_setup(folder, made.calibration, *made.projector);
         } else {
             write_calibration(folder, made.calibration);
         }
-        write_origin(folder, origin_of(made, request));
+        write_origin(folder, origin_of(made, settings));
         return made.calibration.id;
     });
 }

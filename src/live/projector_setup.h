@@ -66,8 +66,8 @@ std::filesystem::path calibrate_on_bench(Bench& bench,
 void check_calibrations_folder();
 /// Keeps a calibration as the newest; where its projector stands must still be said
 /// (`add_projector`) if that is not known. Throws FileError.
-std::filesystem::path keep_calibration(const BenchCalibration& made,
-                                       const BenchCalibrationRequest& request);
+std::filesystem::path keep_calibration(const CalibrationResult& made,
+                                       const CalibrationSettings& settings);
 
 /// The same of one whose mock-up was moved by hand (write_nudged()).
 std::filesystem::path keep_nudged(const std::filesystem::path& calibration,

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "core/worker.h"
-#include "jobs/picture.h"
+#include "jobs/comparison.h"
 #include "jobs/render/render.h"
 #include "live/low_priority.h"
 

@@ -4,7 +4,7 @@
 
 #include "core/colour.h"
 #include "core/error.h"
-#include "jobs/picture.h"
+#include "jobs/comparison.h"
 
 namespace livery {
 

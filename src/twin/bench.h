@@ -13,7 +13,7 @@
 #include "scene/view.h"
 #include "twin/description.h"
 #include "twin/light_transport.h"
-#include "twin/observer.h"
+#include "twin/received.h"
 
 namespace livery {
 

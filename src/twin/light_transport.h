@@ -1,18 +1,53 @@
-// Where a bench's light goes: from the projector's pixels over the mock-up to camera, projector and
-// eye. It is the geometry alone. Spectra, the projector's response, the room's light, the sensor,
-// its noise and mishaps come after it, so that benches that differ in those share it.
+// One bounce of light between places of the mock-up, gathered at a few thousand places of its
+// surface.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <string>
+#include <unordered_map>
+#include <vector>
 
 #include "core/progress.h"
 #include "scene/product.h"
-#include "twin/interreflection.h"
 #include "twin/light_paths.h"
 
 namespace livery {
+
+/// Light from one projector pixel that reaches a gather place by way of another place of the
+/// mock-up: weight times the pixel's light times the reflectance there.
+struct Gathers {
+    std::vector<std::uint32_t> begin;  ///< places + 1
+    std::vector<PathTerm> terms;       ///< of one place: by surface, then by projector pixel
+
+    /// Up to eight places around each receiver; weights sum to 1 (or are all 0: none near).
+    struct Blend {
+        std::array<std::uint32_t, 8> place{};
+        std::array<float, 8> weight{};
+    };
+};
+
+/// Which places there are follows from the receivers: one in each cell of a grid in space and each
+/// of the six directions that the surface mainly faces there.
+class GatherPlaces {
+  public:
+    explicit GatherPlaces(double cell_mm) : cell_mm_(cell_mm) {}
+    void add(const LightPaths& receivers);
+    Gathers gather(const TracedWorld& world, int rays_a_place, const Progress& progress) const;
+    std::vector<Gathers::Blend> blend(const LightPaths& receivers) const;
+    std::size_t size() const { return places_.size(); }
+
+  private:
+    struct Place {
+        glm::dvec3 mean_mm{0.0};  ///< of all receivers of the cell so far
+        double count = 0.0;
+        glm::dvec3 position_mm{0.0}, normal{0.0};  ///< of the receiver nearest the mean
+    };
+    std::unordered_map<std::uint64_t, std::uint32_t> index_;
+    std::vector<Place> places_;
+    double cell_mm_;
+};
 
 /// Whether the observer's own picture is traced besides what each projector pixel lights.
 enum class EyePicture { none, traced };

@@ -62,7 +62,7 @@ BENCHMARK(FringeDecoding)
 
 /// The default bench with a quarter of the pixels a side, calibrated once.
 struct Calibrated {
-    BenchCalibration result;
+    CalibrationResult result;
     ColourSamples samples;
 
     Calibrated() {
@@ -71,8 +71,9 @@ struct Calibrated {
             *view = resized(*view, view->width / 4, view->height / 4);
         }
         Bench bench(description, car().product);
-        result = calibrate_through_ports(bench, car().product, {});
-        samples = sample_colours(result.live.captures, result.live.map);
+        result =
+            calibrate_through_ports(bench.ports(), settings_of(bench.description(), car().product));
+        samples = sample_colours(result.captures, result.map);
     }
 };
 const Calibrated& calibrated() {
@@ -81,7 +82,7 @@ const Calibrated& calibrated() {
 }
 
 void ColourCalibrationOfASession(benchmark::State& state) {
-    const LiveResult& live = calibrated().result.live;
+    const CalibrationResult& live = calibrated().result;
     for (auto _ : state) {
         benchmark::DoNotOptimize(calibrate_colour(live.captures, live.patterns, live.map, {}));
     }

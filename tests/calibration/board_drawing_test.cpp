@@ -1,7 +1,5 @@
 // Boards to print: what is drawn lies where the board has it, in millimetres, in both kinds of
 // file, and the shipped files are what the program draws.
-#include "calibration/geometry/board_drawing.h"
-
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -11,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include "calibration/geometry/board.h"
 #include "calibration/support/board_photographs.h"
 #include "calibration/support/messages.h"
 #include "core/paths.h"

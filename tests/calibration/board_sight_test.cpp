@@ -7,7 +7,6 @@
 #include <gtest/gtest.h>
 #include <opencv2/imgproc.hpp>
 
-#include "calibration/geometry/board_faults.h"
 #include "calibration/geometry/find_board.h"
 #include "calibration/support/board_photographs.h"
 #include "core/error.h"

@@ -8,7 +8,7 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "calibration/geometry/leave_one_out.h"
+#include "calibration/geometry/solve_pair.h"
 #include "calibration/registration/pixel_refinement.h"
 #include "calibration/support/board_sights.h"
 #include "core/error.h"

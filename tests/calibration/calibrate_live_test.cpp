@@ -1,3 +1,5 @@
+#include "calibration/calibrate_live.h"
+
 #include <algorithm>
 #include <atomic>
 #include <cmath>
@@ -6,7 +8,6 @@
 #include <glm/matrix.hpp>
 #include <gtest/gtest.h>
 
-#include "calibration/colour/colour.h"
 #include "calibration/support/messages.h"
 #include "calibration/support/synthetic_bench.h"
 #include "core/error.h"
@@ -71,8 +72,8 @@ struct LiveBench {
         if (steps_per_stop == 0.0) return exposure_s;
         return std::exp2(std::round(steps_per_stop * std::log2(exposure_s)) / steps_per_stop);
     }
-    LiveResult run(int shots = 1, const Progress& progress = {}) {
-        LiveOptions options;
+    CalibrationResult run(int shots = 1, const Progress& progress = {}) {
+        CalibrationSettings options;
         options.width = 160;
         options.height = 104;
         options.shots = shots;
@@ -95,7 +96,7 @@ TEST(CalibrateLive, FindsExposureMapMixingAndXyz) {
         fractions.push_back(fraction);
         EXPECT_FALSE(stage.empty());
     };
-    const LiveResult result = live.run(1, progress);
+    const CalibrationResult result = live.run(1, progress);
     EXPECT_EQ(result.colour_photographs, 6);
     EXPECT_EQ(result.latency_photographs, 0);
     EXPECT_EQ(result.captures.size(), 6u);
@@ -106,6 +107,9 @@ TEST(CalibrateLive, FindsExposureMapMixingAndXyz) {
     EXPECT_GT(result.calibration.valid_fraction, 0.9);
     EXPECT_LT(result.calibration.additivity_error, 1e-3);
     EXPECT_TRUE(result.calibration.warnings.empty()) << result.calibration.warnings.front();
+    ColourCalibration sealed = result.calibration;
+    seal(sealed);
+    EXPECT_EQ(result.calibration.id, sealed.id);
     // Exposure: white peaks between 60% and 85%, in every channel
     float peak = 0.0f;
     for (const float v : result.captures[1].photograph.image.values) peak = std::max(peak, v);
@@ -127,7 +131,7 @@ TEST(CalibrateLive, ShowsFringesWhereTheyAreAskedForAndUsesThem) {
         live.bench.projector_from_camera = [](glm::dvec2 c) -> std::optional<glm::dvec2> {
             return glm::dvec2(c.x + 0.01 * c.y - 20.3, c.y - 0.01 * c.x - 18.2);
         };
-        LiveOptions options;
+        CalibrationSettings options;
         options.width = 160;
         options.height = 104;
         options.places = places;
@@ -163,7 +167,7 @@ TEST(CalibrateLive, FindsExposureFromFarTooDarkAndFarTooBright) {
     for (const double start : {2e-5, 8.0}) {
         LiveBench live;
         live.bench.exposure_s = start;
-        const LiveResult result = live.run();
+        const CalibrationResult result = live.run();
         EXPECT_GT(result.calibration.valid_fraction, 0.9) << start;
         EXPECT_NEAR(result.captures[0].photograph.exposure_s, 0.1, 0.02) << start;
     }
@@ -178,7 +182,7 @@ TEST(CalibrateLive, FindsExposureAmongTheStepsOfAShutter) {
             live.steps_per_stop = steps_per_stop;
             live.bench.exposure_s = live.nearest_time_s(0.013);
             live.bench.file_units_per_light *= std::exp2(k / static_cast<double>(kBetweenStops));
-            const LiveResult result = live.run();
+            const CalibrationResult result = live.run();
             float peak = 0.0f;
             for (const float v : result.captures[1].photograph.image.values)
                 peak = std::max(peak, v);
@@ -191,7 +195,7 @@ TEST(CalibrateLive, WaitsForALateProjector) {
     for (const int latency : {1, 3}) {
         LiveBench live;
         live.latency = latency;
-        const LiveResult result = live.run();
+        const CalibrationResult result = live.run();
         EXPECT_EQ(result.latency_photographs, latency);
         EXPECT_LT(
             largest_relative_difference(result.calibration.xyz_from_camera, live.xyz_from_camera),
@@ -212,10 +216,11 @@ TEST(CalibrateLive, RepeatsWhatCameLateOnce) {
         live.latency = shown == 9 || shown == 22 || shown == 38 ? 1 : 0;
         show(drive);
     };
-    LiveOptions options;
+    CalibrationSettings options;
     options.width = 160;
     options.height = 104;
-    const LiveResult result = calibrate_live(ports, options);
+    options.shots = 1;
+    const CalibrationResult result = calibrate_live(ports, options);
     EXPECT_LT(result.calibration.additivity_error, 1e-3);
     EXPECT_LT(largest_relative_difference(result.calibration.xyz_from_camera, live.xyz_from_camera),
               2e-3);
@@ -224,7 +229,7 @@ TEST(CalibrateLive, RepeatsWhatCameLateOnce) {
 TEST(CalibrateLive, ShowsMosaicsWhereWhiteIsNotTheSum) {
     LiveBench live;
     live.bench.white_segment = 0.8;
-    const LiveResult result = live.run();
+    const CalibrationResult result = live.run();
     EXPECT_EQ(result.colour_photographs, 12);
     EXPECT_EQ(result.patterns.size(), 12u);
     EXPECT_GT(result.calibration.table.grid, 0);
@@ -236,7 +241,7 @@ TEST(CalibrateLive, ShowsMosaicsWhereWhiteIsNotTheSum) {
 TEST(CalibrateLive, ShowsMosaicsWhereWhiteIsLessThanItsParts) {
     LiveBench live;
     live.bench.white_segment = -0.1;
-    const LiveResult result = live.run();
+    const CalibrationResult result = live.run();
     EXPECT_EQ(result.colour_photographs, 12);
     EXPECT_GT(result.calibration.table.grid, 0);
     EXPECT_NEAR(result.calibration.additivity_error, 0.1 / 0.9, 1e-3);
@@ -247,7 +252,7 @@ TEST(CalibrateLive, ShowsMosaicsWhereWhiteIsLessThanItsParts) {
 TEST(CalibrateLive, FollowsASlowLampAndRefusesAFastOne) {
     LiveBench slow;
     slow.drift_per_photograph = -5e-4;
-    const LiveResult result = slow.run();
+    const CalibrationResult result = slow.run();
     EXPECT_LT(result.calibration.additivity_error, 1e-3);
     LiveBench fast;
     fast.drift_per_photograph = -4e-3;
@@ -275,8 +280,8 @@ TEST(CalibrateLive, SaysWhatIsWrongWithTheSetUp) {
                "shows no change from the picture before");
 
     LiveBench bad;
-    EXPECT_THROW(calibrate_live(BenchPorts{}, LiveOptions{}), std::invalid_argument);
-    LiveOptions options;
+    EXPECT_THROW(calibrate_live(BenchPorts{}, CalibrationSettings{}), std::invalid_argument);
+    CalibrationSettings options;
     options.width = 160;
     options.height = 104;
     options.shots = 0;
@@ -302,9 +307,10 @@ TEST(CalibrateLive, WithoutAColorimeterTheMatrixIsLabelledAsAssumed) {
     LiveBench live;
     BenchPorts ports = live.ports();
     ports.measure_xyz = nullptr;
-    LiveOptions options;
+    CalibrationSettings options;
     options.width = 160;
     options.height = 104;
+    options.shots = 1;
     EXPECT_EQ(calibrate_live(ports, options).calibration.xyz_origin, "assumed Rec.709");
 }
 

@@ -1,7 +1,5 @@
 // ChArUco boards: markers and layout beside OpenCV's, corners beside the truth, and boards to
 // print.
-#include "calibration/geometry/charuco.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>

@@ -1,5 +1,3 @@
-#include "calibration/correspondence/fringes.h"
-
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -9,7 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "calibration/correspondence/fringe_decode.h"
-#include "calibration/correspondence/fringe_evidence.h"
+#include "calibration/correspondence/patterns.h"
 #include "calibration/support/fringe_scene.h"
 #include "calibration/support/messages.h"
 #include "core/error.h"

@@ -11,8 +11,8 @@
 #include <opencv2/imgproc.hpp>
 
 #include "calibration/correspondence/gray_code.h"
-#include "calibration/geometry/carry_corners.h"
-#include "calibration/geometry/leave_one_out.h"
+#include "calibration/geometry/homography.h"
+#include "calibration/geometry/solve_pair.h"
 #include "calibration/registration/rotation.h"
 #include "calibration/support/board_sights.h"
 #include "core/error.h"

@@ -8,7 +8,6 @@
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
-#include "calibration/environment/ball_outline.h"
 #include "calibration/support/degree.h"
 #include "core/random.h"
 #include "support/message_of.h"

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "calibration/colour/camera_xyz.h"
+#include "calibration/colour/colour.h"
 #include "calibration/colour/shrinkage.h"
 #include "calibration/support/messages.h"
 #include "calibration/support/synthetic_bench.h"

@@ -1,12 +1,11 @@
 // The nearest of many points, against all of them looked at.
-#include "calibration/registration/nearest_sample.h"
-
 #include <algorithm>
 #include <limits>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
 
+#include "calibration/registration/surface_samples.h"
 #include "core/random.h"
 
 namespace livery {

@@ -11,6 +11,7 @@
 
 #include "calibration/correspondence/gray_code.h"
 #include "core/image_io.h"
+#include "core/time.h"
 #include "support/reference_data.h"
 
 namespace livery {
@@ -29,10 +30,6 @@ std::vector<Image8> load_pose(const std::filesystem::path& folder) {
         pictures.push_back(std::move(picture));
     }
     return pictures;
-}
-
-double seconds_since(std::chrono::steady_clock::time_point start) {
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
 TEST(RealPhotographs, LitPixelsOfTheBoardLieOnItsPlaneAndDecodingIsFast) {

@@ -91,7 +91,6 @@ ColourCalibration measured_everywhere(const ImageF& geometry, std::uint64_t seed
             }
         }
     }
-    seal(c);
     return c;
 }
 
@@ -100,7 +99,6 @@ void hide(ColourCalibration& c, int x, int y, PixelStatus status) {
     for (int k = 0; k < 9; ++k) c.unmixing.at(x, y, k) = 0.0f;
     for (int k = 0; k < 3; ++k) c.dark.at(x, y, k) = c.span.at(x, y, k) = 0.0f;
     for (int k = 0; k < 2; ++k) c.camera_px.at(x, y, k) = kNan;
-    seal(c);
 }
 
 PixelStatus status_at(const ColourCalibration& c, int x, int y) {
@@ -121,7 +119,6 @@ std::vector<glm::ivec2> hide_disc(ColourCalibration& c) {
             hidden.emplace_back(x, y);
         }
     }
-    seal(c);
     return hidden;
 }
 
@@ -130,10 +127,8 @@ TEST(PredictHidden, FindsTheLightOfAHiddenRegion) {
         const ImageF geometry = geometry_of(surface);
         ColourCalibration c = measured_everywhere(geometry, 11);
         const auto hidden = hide_disc(c);
-        const std::string id = c.id;
         const ColourCalibration p = predict_hidden(c, geometry);
 
-        EXPECT_NE(p.id, id) << surface.name;
         EXPECT_TRUE(p.warnings.empty()) << p.warnings.front();
         EXPECT_NEAR(p.predicted_fraction,
                     static_cast<double>(hidden.size()) / (kProjectorWidth * kProjectorHeight),
@@ -219,7 +214,6 @@ TEST(PredictHidden, NothingIsPredictedOnASurfaceThatIsNotNeutral) {
         for (int x = 0; x < kProjectorWidth / 5; ++x) c.unmixing.at(x, y, 1) -= 0.2f;
     }
     c.mixing_spread = 40.0;
-    seal(c);
     const ColourCalibration p = predict_hidden(c, geometry);
     EXPECT_EQ(status_at(p, 100, 60), PixelStatus::edge);
     EXPECT_EQ(p.predicted_fraction, 0.0);

@@ -9,9 +9,9 @@
 #include <glm/matrix.hpp>
 #include <gtest/gtest.h>
 
+#include "calibration/environment/light_picture.h"
 #include "calibration/environment/map_figures.h"
 #include "calibration/environment/mirror_ball.h"
-#include "calibration/environment/panorama.h"
 #include "calibration/support/degree.h"
 #include "core/worst_error.h"
 #include "scene/look.h"

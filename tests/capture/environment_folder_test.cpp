@@ -1,10 +1,8 @@
-#include "capture/environment_folder.h"
-
 #include <string>
 
 #include <gtest/gtest.h>
 
-#include "capture/sphere_folder.h"
+#include "capture/stand_folders.h"
 #include "core/image_io.h"
 #include "core/json.h"
 #include "support/file_error.h"

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "capture/environment_folder.h"
+#include "capture/stand_folders.h"
 #include "core/image_io.h"
 #include "core/pictures/exposure_settings.h"
 #include "support/dng.h"

@@ -1,9 +1,8 @@
-#include "capture/spot_folder.h"
-
 #include <string>
 
 #include <gtest/gtest.h>
 
+#include "capture/stand_folders.h"
 #include "core/image_io.h"
 #include "core/json.h"
 #include "support/file_error.h"

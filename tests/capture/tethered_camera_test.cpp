@@ -8,9 +8,8 @@
 
 #include <gtest/gtest.h>
 
-#include "capture/camera_words.h"
+#include "capture/camera.h"
 #include "capture/fault_of.h"
-#include "capture/patient_camera.h"
 #include "capture/recording.h"
 #include "core/colour.h"
 #include "support/dng.h"

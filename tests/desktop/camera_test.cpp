@@ -46,8 +46,8 @@ const BenchDescription& description() {
     return small;
 }
 
-BenchCalibrationRequest request() {
-    BenchCalibrationRequest request;
+CalibrationSettings request() {
+    CalibrationSettings request;
     request.made_with = "the bench directly";
     request.product = small_bench_product();
     request.projector = description().projector.view;
@@ -85,7 +85,7 @@ class CameraBeforeMonitor : public TwoMonitors {
         ::setenv("HOME", home_.c_str(), 1);  // libgphoto2 writes there
         Session session = Session::open(running->session_file());
         session.execute(SetQuality{Quality::draft});
-        BenchCalibration kept;
+        CalibrationResult kept;
         kept.calibration = directly().first;
         kept.projector = request().projector;
         session.execute(SetCalibration{keep_calibration(kept, request()).string()});

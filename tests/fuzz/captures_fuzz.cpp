@@ -1,6 +1,5 @@
-#include "capture/environment_folder.h"
 #include "capture/manifest_io.h"
-#include "capture/sphere_folder.h"
+#include "capture/stand_folders.h"
 #include "fuzz/fuzz.h"
 
 // The same text as a manifest of photographs, as one of patterns, as one of a sphere, as one of the

@@ -1,4 +1,4 @@
-#include "capture/spot_folder.h"
+#include "capture/stand_folders.h"
 #include "fuzz/fuzz.h"
 
 LIVERY_FUZZ(text) { livery::parse_spot_manifest(text, "/no folder/manifest.json"); }

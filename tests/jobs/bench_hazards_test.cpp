@@ -44,7 +44,7 @@ void expect_additive_and_quiet(const Judged& judged) {
 
 Refusal refusal_of_bench(const BenchDescription& description, int shots = 1) {
     Bench bench = testing::bench_on_kept_light(description, small_bench_product());
-    return refusal_of([&] { calibrate_live(bench.ports(), live_options(description, shots)); });
+    return refusal_of([&] { calibrate_live(bench.ports(), live_settings(description, shots)); });
 }
 
 template <typename Damage>
@@ -52,7 +52,7 @@ std::string file_error_of(const Damage& damage) {
     const BenchDescription description = small_bench_description();
     Bench bench = testing::bench_on_kept_light(description, small_bench_product());
     try {
-        calibrate_live(damaged(bench, damage), live_options(description));
+        calibrate_live(damaged(bench, damage), live_settings(description));
     } catch (const FileError& error) {
         return error.what();
     }
@@ -104,8 +104,8 @@ TEST(BenchHazards, PaperModeRefusesAWhiteSegment) {
     BenchDescription description = small_bench_description();
     description.projector.white_segment = 0.8;
     Bench bench = testing::bench_on_kept_light(description, small_bench_product());
-    LiveOptions options = live_options(description);
-    options.colour.mode = ColourMode::paper;
+    CalibrationSettings options = live_settings(description);
+    options.mode = ColourMode::paper;
     const Refusal refusal = refusal_of([&] { calibrate_live(bench.ports(), options); });
     EXPECT_HAS(refusal.why, "not additive");
     EXPECT_HAS(refusal.fix, "sRGB or cinema mode");
@@ -116,10 +116,10 @@ TEST(BenchHazards, PaperModeRefusesAWhiteSegment) {
 TEST(BenchHazards, PaperModeWorksAtItsOwnDrives) {
     const BenchDescription description = small_bench_description();
     Bench bench = testing::bench_on_kept_light(description, small_bench_product());
-    LiveOptions options = live_options(description);
-    options.colour.mode = ColourMode::paper;
-    options.colour.dark_drive = 64;
-    options.colour.bright_drive = 200;
+    CalibrationSettings options = live_settings(description);
+    options.mode = ColourMode::paper;
+    options.dark_drive = 64;
+    options.bright_drive = 200;
     const Judged result = judged(bench, calibrate_live(bench.ports(), options));
     expect_within(result, {0.82, 2.5});
     EXPECT_EQ(result.live.calibration.mode, "paper");
@@ -294,7 +294,7 @@ TEST(BenchHazards, MissingMockupIsRefused) {
     for (glm::vec3& position : away->mesh.positions_mm) position.x += 3000.0f;
     Bench bench = testing::bench_on_kept_light(description, away);
     const Refusal refusal =
-        refusal_of([&] { calibrate_live(bench.ports(), live_options(description)); });
+        refusal_of([&] { calibrate_live(bench.ports(), live_settings(description)); });
     EXPECT_HAS(refusal.why, "sees no light of the projector");
     EXPECT_HAS(refusal.fix, "aim the camera at the mock-up");
 }
@@ -376,7 +376,7 @@ TEST(BenchHazards, CameraThatKeepsAWrongExposureIsRefused) {
         BenchPorts ports = bench.ports();
         ports.photograph = [take = ports.photograph](double) { return take(0.0); };
         const Refusal refusal =
-            refusal_of([&] { calibrate_live(ports, live_options(description)); });
+            refusal_of([&] { calibrate_live(ports, live_settings(description)); });
         EXPECT_HAS(refusal.why, "no exposure brings white");
         EXPECT_EQ(refusal.why.find(" 0 s"), std::string::npos) << refusal.why;
         EXPECT_HAS(refusal.fix, "let the program set the exposure");
@@ -401,7 +401,7 @@ TEST(BenchHazards, NotANumberIsMaskedWhereItIs) {
                 for (int x = 200; x < 230; ++x)
                     photograph.image.at(x, y, 1) = std::numeric_limits<float>::quiet_NaN();
         });
-        const Judged result = judged(bench, calibrate_live(ports, live_options(description)));
+        const Judged result = judged(bench, calibrate_live(ports, live_settings(description)));
         expect_within(result, kClean);
         // 600 camera pixels, which see some 300 projector pixels
         EXPECT_GT(result.comparison.masked_fraction, 0.04);
@@ -447,7 +447,7 @@ TEST(BenchHazards, StopIsObeyedWithinOnePhotograph) {
         });
         Progress progress;
         progress.stop = &stop;
-        EXPECT_THROW(calibrate_live(ports, live_options(description), progress), Cancelled);
+        EXPECT_THROW(calibrate_live(ports, live_settings(description), progress), Cancelled);
         EXPECT_EQ(taken, at + 1);
     }
 }

@@ -1,12 +1,11 @@
 // A calibration's figures against the scale that docs/calibration.md states.
-#include "jobs/calibrate/calibration_grade.h"
-
 #include <cmath>
 #include <string>
 
 #include <gtest/gtest.h>
 
 #include "core/paths.h"
+#include "jobs/calibrate/calibration_check.h"
 
 namespace livery {
 namespace {

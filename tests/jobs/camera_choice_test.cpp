@@ -8,13 +8,12 @@ namespace livery {
 namespace {
 
 TEST(CameraChoices, AnAddressSaysWhichKindOfCameraItIs) {
-    using Kind = CameraChoice::Kind;
     EXPECT_EQ(camera_at_address("ptpip:192.168.1.5"),
-              (CameraChoice{Kind::tethered, "ptpip:192.168.1.5"}));
+              (CameraChoice{"tethered", "ptpip:192.168.1.5"}));
     EXPECT_EQ(camera_at_address("ptpip:127.0.0.1:15741"),
-              (CameraChoice{Kind::tethered, "ptpip:127.0.0.1:15741"}));
+              (CameraChoice{"tethered", "ptpip:127.0.0.1:15741"}));
     for (const char* video : {"http://a/b", "https://a", "rtsp://user@a:554/1"})
-        EXPECT_EQ(camera_at_address(video), (CameraChoice{Kind::video, video}));
+        EXPECT_EQ(camera_at_address(video), (CameraChoice{"video", video}));
     for (const char* none : {"", "192.168.1.5", "ptpip:", "http://", "ftp://a", "file.avi"}) {
         const std::string message = message_of([&] { camera_at_address(none); });
         EXPECT_NE(message.find("found \"" + std::string(none) + "\""), std::string::npos);

@@ -1,7 +1,6 @@
-#include "jobs/camera_to_xyz_file.h"
-
 #include <gtest/gtest.h>
 
+#include "calibration/settings.h"
 #include "support/file_error.h"
 #include "support/temporary_folder.h"
 

@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-#include "capture/patient_camera.h"
+#include "capture/camera.h"
 #include "capture/tethered_camera.h"
 #include "capture/video_camera.h"
 #include "core/random.h"
@@ -31,7 +31,7 @@ namespace livery {
 namespace {
 
 using testing::judged;
-using testing::live_options;
+using testing::live_settings;
 using testing::MjpegServer;
 using testing::Refusal;
 using testing::refusal_of;
@@ -84,16 +84,16 @@ BenchDescription filmed_description() {
 }
 
 /// What the camera and the projector do not take is ours.
-void print_times(const Recording& recording, const LiveResult& live) {
-    const double theirs = live.camera_seconds + live.projector_seconds;
+void print_times(const Recording& recording, const CalibrationResult& live) {
+    const auto& [all, camera, projector] = live.captured;
     std::printf(
         "    %d photographs: %.1f s in the camera, %.1f s in the projector, %.1f s in all: "
         "%.1f%% more\n",
         recording.taken(),
-        live.camera_seconds,
-        live.projector_seconds,
-        live.capture_seconds,
-        100.0 * (live.capture_seconds / theirs - 1.0));
+        camera,
+        projector,
+        all,
+        100.0 * (all / (camera + projector) - 1.0));
 }
 
 TEST(Cameras, NightlyAVideoCameraCalibratesAsTheBenchDoes) {
@@ -110,22 +110,21 @@ TEST(Cameras, NightlyAVideoCameraCalibratesAsTheBenchDoes) {
     ports.measure_xyz = filmed.colorimeter();
     const TemporaryFolder folder;
     Recording recording(folder.path(), "the bench, filmed");
-    LiveResult live = calibrate_recorded(recording, ports, live_options(description));
+    CalibrationResult live =
+        calibrate_through_ports(ports, live_settings(description), {}, &recording);
     print_times(recording, live);
     EXPECT_GT(live.calibration.valid_fraction, 0.85);
     const Comparison& seen = judged(filmed.bench, std::move(live)).comparison;
 
     Bench direct = testing::bench_on_kept_light(small_bench_description(), small_bench_product());
     const Comparison& best =
-        judged(direct, calibrate_live(direct.ports(), live_options(description))).comparison;
+        judged(direct, calibrate_live(direct.ports(), live_settings(description))).comparison;
     // Eight bits against fourteen: a step at a tenth of white is 3% of it, of which the noise of
     // frames and neighbours leaves a third.
     EXPECT_LT(seen.interior.median, best.interior.median + 0.5);
 
     // The recording is a captures folder as any other; its colours are then the camera's own.
-    CapturedCalibrationRequest request;
-    request.captures = folder.path();
-    const ColourCalibration again = calibrate_from_folder(request);
+    const ColourCalibration again = calibrate_from_folder({folder.path(), {}, {}});
     EXPECT_GT(again.valid_fraction, 0.85);
 }
 
@@ -154,12 +153,13 @@ TEST(Cameras, ATetheredCameraCalibratesAsTheBenchDoes) {
     ports.measure_xyz = on_bench.measure_xyz;
     const TemporaryFolder folder;
     Recording recording(folder.path(), "the bench, tethered");
-    LiveResult live = calibrate_recorded(recording, ports, live_options(description));
+    CalibrationResult live =
+        calibrate_through_ports(ports, live_settings(description), {}, &recording);
     print_times(recording, live);
     const Comparison& seen = judged(bench, std::move(live)).comparison;
     Bench direct = testing::bench_on_kept_light(description, small_bench_product());
     const Comparison& best =
-        judged(direct, calibrate_live(direct.ports(), live_options(description))).comparison;
+        judged(direct, calibrate_live(direct.ports(), live_settings(description))).comparison;
     // The same numbers but for the nearest shutter speed and rounding: the camera's noise.
     EXPECT_LT(seen.interior.median, best.interior.median + 0.05);
     EXPECT_EQ(responder.on_card(), 0u);
@@ -200,8 +200,8 @@ TEST(Cameras, ACameraThatGivesOnlyJpegShowsItsCurve) {
         ports.measure_xyz = on_bench.measure_xyz;
         return ports;
     };
-    const LiveOptions live = live_options(description);
-    const CameraChoice choice{CameraChoice::Kind::tethered, responder.port()};
+    const CalibrationSettings live = live_settings(description);
+    const CameraChoice choice{"tethered", responder.port()};
     const auto median = [&] {
         const CaptureBench opened = open_capture_bench(choice, nullptr, {});
         return judged(bench, calibrate_live(ports_of_camera(*opened.camera), live))
@@ -240,8 +240,8 @@ struct Interrupted {
         };
         return ports;
     }
-    LiveResult run(Recording& recording) {
-        return calibrate_recorded(recording, ports(), live_options(description));
+    CalibrationResult run(Recording& recording) {
+        return calibrate_through_ports(ports(), live_settings(description), {}, &recording);
     }
 };
 
@@ -258,7 +258,7 @@ TEST(Cameras, ARecordingReplaysToTheSameCalibration) {
     nothing.show = [](const Image8&) {};
     nothing.measure_xyz = [](glm::dvec2) -> glm::dvec3 { throw std::runtime_error("read anew"); };
     const ColourCalibration second =
-        calibrate_live(replay.ports(nothing), live_options(room.description)).calibration;
+        calibrate_live(replay.ports(nothing), live_settings(room.description)).calibration;
     EXPECT_EQ(second.status.values, first.status.values);
     EXPECT_EQ(second.dark.values, first.dark.values);
     EXPECT_EQ(second.span.values, first.span.values);
@@ -344,7 +344,7 @@ TEST(Cameras, APhotographThatCannotBeUsedIsTakenAgain) {
         EXPECT_NE(message_of([&] { room.run(recording); }).find(said), std::string::npos)
             << message_of([&] { room.run(recording); });
         const int taken = recording.taken();
-        const LiveResult live = room.run(recording);
+        const CalibrationResult live = room.run(recording);
         EXPECT_GE(recording.answered(), taken - 1) << said;
         EXPECT_GT(live.calibration.valid_fraction, 0.95) << said;
     }
@@ -362,7 +362,7 @@ TEST(Cameras, AFullDiskIsSaidAndNothingIsLost) {
     disk.reset();
     EXPECT_NE(said.find(folder.path().string()), std::string::npos) << said;
     Recording again(folder.path(), "bench");
-    const LiveResult live = room.run(again);
+    const CalibrationResult live = room.run(again);
     EXPECT_GE(again.answered(), 18);
     EXPECT_GT(live.calibration.valid_fraction, 0.95);
 }
@@ -390,9 +390,9 @@ TEST(Cameras, ACameraThatIsPulledIsWaitedFor) {
     ports.measure_xyz = filmed.colorimeter();
     const TemporaryFolder folder;
     Recording recording(folder.path(), "the bench, filmed");
-    EXPECT_GT(
-        calibrate_recorded(recording, ports, live_options(description)).calibration.valid_fraction,
-        0.85);
+    EXPECT_GT(calibrate_through_ports(ports, live_settings(description), {}, &recording)
+                  .calibration.valid_fraction,
+              0.85);
     ASSERT_GE(waits.size(), 3u);
     EXPECT_NE(waits.front().why.find(server.address()), std::string::npos);
     EXPECT_FALSE(waits.front().fix.empty());

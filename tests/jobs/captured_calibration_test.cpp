@@ -8,14 +8,13 @@
 
 #include <gtest/gtest.h>
 
-#include "calibration/correspondence/fringes.h"
+#include "calibration/correspondence/patterns.h"
+#include "calibration/settings.h"
 #include "capture/patterns_folder.h"
 #include "core/image_io.h"
 #include "core/json.h"
 #include "core/statistics.h"
 #include "core/worst_error.h"
-#include "jobs/calibrate/shown_captures.h"
-#include "jobs/camera_to_xyz_file.h"
 #include "jobs/simulated_captures.h"
 #include "session/small_session.h"
 #include "support/message_of.h"
@@ -57,9 +56,7 @@ class CapturedCalibration : public ::testing::Test {
                 entry[field] = (from / entry[field].get<std::string>()).string();
         change(manifest["captures"]);
         write_json_file(folder_ / "manifest.json", manifest);
-        CapturedCalibrationRequest request;
-        request.captures = folder_.path();
-        return calibrate_from_folder(request);
+        return calibrate_from_folder({folder_.path(), {}, {}});
     }
     std::string refused(const std::function<void(Json&)>& change) const {
         const std::string said = message_of([&] { calibrated(change); });
@@ -138,8 +135,7 @@ TEST_F(CapturedCalibration, IsTheOneOfTheSamePhotographsTakenLive) {
         seen = &found->second;
     };
     ports.photograph = [&](double) { return *seen; };
-    LiveOptions options = testing::live_options(testing::small_bench_description());
-    options.colour.camera_to_xyz = assumed_rec709();
+    CalibrationSettings options = testing::live_settings(testing::small_bench_description());
     const ColourCalibration live = calibrate_live(ports, options).calibration;
 
     expect_same(folder.unmixing, live.unmixing, "unmixing");
@@ -201,11 +197,10 @@ TEST_F(CapturedCalibration, RecognisesAnotherOrderOfTheFiles) {
 // As a live calibration does: what lights the mock-up where the camera does not see it
 TEST_F(CapturedCalibration, PredictsWhatTheCameraDoesNotSee) {
     const ColourCalibration without = calibrated([](Json&) {});
-    CapturedCalibrationRequest request;
-    request.captures = folder_.path();
-    request.product = testing::small_bench_product();
-    request.projector = testing::small_bench_description().projector.view;
-    const ColourCalibration with = calibrate_from_folder(request);
+    CalibrationSettings settings;
+    settings.product = testing::small_bench_product();
+    settings.projector = testing::small_bench_description().projector.view;
+    const ColourCalibration with = calibrate_from_folder({folder_.path(), {}, {}}, settings);
     EXPECT_EQ(without.predicted_fraction, 0.0);
     std::printf("    %.1f%% predicted, to %.1f%% in the median\n",
                 100.0 * with.predicted_fraction,
@@ -276,9 +271,7 @@ TEST_F(CapturedCalibration, UsesFringesThatWerePhotographed) {
         for (const Json& one : manifest["captures"])
             if (!left_out(one["role"].get<std::string>())) changed["captures"].push_back(one);
         write_json_file(manifest_file, changed);
-        CapturedCalibrationRequest request;
-        request.captures = folder_ / "captures";
-        return calibrate_from_folder(request);
+        return calibrate_from_folder({folder_ / "captures", {}, {}});
     };
     const ColourCalibration fine = calibrated_without([](const std::string&) { return false; });
     const ColourCalibration whole = calibrated_without(is_fringe_role);

@@ -14,7 +14,7 @@
 namespace livery {
 namespace {
 
-using testing::live_options;
+using testing::live_settings;
 using testing::small_bench_description;
 using testing::small_bench_product;
 
@@ -57,7 +57,7 @@ TEST(EyeComparison, AWrongPoseCostsWhatItCostsInTheRoom) {
     const Tracer tracer(product->mesh);
     Bench bench = testing::bench_on_kept_light(description, product, EyePicture::traced);
     const ColourCalibration calibration =
-        calibrate_live(bench.ports(), live_options(description)).calibration;
+        calibrate_live(bench.ports(), live_settings(description)).calibration;
     const double white_y = design_white_luminance(calibration, 20.0, bench.truth().lit);
     const CompensationTable table = bake(calibration, white_y);
     const glm::dvec3 white_xyz = white_y * d65_xyz();

@@ -1,11 +1,10 @@
-#include "jobs/picture.h"
-
 #include <limits>
 
 #include <gtest/gtest.h>
 
 #include "core/colour.h"
 #include "core/image_io.h"
+#include "jobs/comparison.h"
 #include "jobs/render/render.h"
 #include "support/temporary_folder.h"
 

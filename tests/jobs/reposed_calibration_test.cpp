@@ -48,12 +48,12 @@ struct CalibratedBench {
     explicit CalibratedBench(const BenchDescription& description)
         : product(find_product(description.product.string())),
           bench(testing::bench_on_kept_light(description, product)) {
-        made = calibrate_through_ports(bench, product, {});
-        origin = origin_of(made, request_of(description, product));
+        made = calibrate_through_ports(bench.ports(), settings_of(bench.description(), product));
+        origin = origin_of(made, settings_of(description, product));
     }
     std::shared_ptr<const Product> product;
     Bench bench;
-    BenchCalibration made;
+    CalibrationResult made;
     CalibrationOrigin origin;
 };
 
@@ -73,7 +73,7 @@ Worth worth_of(const Bench& bench,
                                   projector,
                                   product.mesh,
                                   bench.truth().lit);
-    LiveResult live;
+    CalibrationResult live;
     live.calibration = calibration;
     const Image8 mockup = mockup_mask(product.mesh, projector);
     worth.colours = judged(bench, std::move(live), &mockup).comparison;

@@ -34,16 +34,15 @@ TEST(RoomPose, NightlyIsFoundOnTheHardBench) {
     const BenchDescription description = half_size("hard");
     const auto product = find_product(description.product.string());
     Bench bench = testing::bench_on_kept_light(description, product);
-    expect_in_place(bench,
-                    *product,
-                    find_room(bench.ports(), 640, 400, description.data_sheets.value(), *product));
+    expect_in_place(bench, *product, find_room(bench.ports(), settings_of(description, product)));
 }
 
 TEST(RoomPose, IsFoundAndLightsTheMockupAloneForTheColours) {
     const BenchDescription description = half_size("default");
     const auto product = find_product(description.product.string());
     Bench bench = testing::bench_on_kept_light(description, product);
-    const BenchCalibration found = calibrate_through_ports(bench, product, {});
+    const CalibrationResult found =
+        calibrate_through_ports(bench.ports(), settings_of(bench.description(), product));
     ASSERT_TRUE(found.room);
     expect_in_place(bench, *product, *found.room);
     EXPECT_EQ(found.calibration.warnings, std::vector<std::string>());
@@ -52,7 +51,8 @@ TEST(RoomPose, IsFoundAndLightsTheMockupAloneForTheColours) {
     BenchDescription told = description;
     told.data_sheets.reset();
     Bench other = testing::bench_on_kept_light(told, product);
-    const BenchCalibration read = calibrate_through_ports(other, product, {});
+    const CalibrationResult read =
+        calibrate_through_ports(other.ports(), settings_of(other.description(), product));
     EXPECT_FALSE(read.room) << "nothing to find it by but the file";
     EXPECT_NEAR(found.calibration.valid_fraction, read.calibration.valid_fraction, 0.02);
     // What stands around is known to the map, and has no correction.
@@ -61,7 +61,7 @@ TEST(RoomPose, IsFoundAndLightsTheMockupAloneForTheColours) {
         const auto status = static_cast<PixelStatus>(found.calibration.status.values[i]);
         corrected += is_valid(status);
         beside += is_valid(status) && !bench.truth().lit.values[i] && !bench.truth().edge.values[i];
-        in_map += std::isfinite(found.room->map.camera_px.values[2 * i]);
+        in_map += std::isfinite(found.room->seen.map.camera_px.values[2 * i]);
     }
     EXPECT_GT(in_map, corrected + corrected / 2);
     EXPECT_EQ(beside, 0u);
@@ -71,7 +71,8 @@ TEST(RoomPose, NightlyOfASphereTakesItsTurnFromTheFile) {
     const BenchDescription description = half_size("sphere");
     const auto product = find_product(description.product.string());
     Bench bench = testing::bench_on_kept_light(description, product);
-    const BenchCalibration found = calibrate_through_ports(bench, product, {});
+    const CalibrationResult found =
+        calibrate_through_ports(bench.ports(), settings_of(bench.description(), product));
     ASSERT_TRUE(found.room);
     EXPECT_EQ(found.room->geometry.free_turns, 3);
     const ErrorStatistics off = offset_of(bench, *product, found.room->geometry.projector);
@@ -102,7 +103,9 @@ TEST(RoomPose, NightlyWithWrongDataSheetsIsRefusedOrRight) {
     for (const Wrong& wrong : all) {
         SCOPED_TRACE(wrong.what);
         try {
-            const RoomPose room = find_room(bench.ports(), 640, 400, wrong.sheets, *product);
+            BenchDescription said = description;
+            said.data_sheets = wrong.sheets;
+            const RoomPose room = find_room(bench.ports(), settings_of(said, product));
             const ErrorStatistics off = offset_of(bench, *product, room.geometry.projector);
             EXPECT_LT(off.p95, 2.0) << "accepted, and wrong";
         } catch (const Refused& refused) {

@@ -19,7 +19,7 @@
 namespace livery {
 namespace {
 
-using testing::live_options;
+using testing::live_settings;
 using testing::small_bench_description;
 using testing::small_bench_product;
 
@@ -32,7 +32,7 @@ struct CalibratedRoom {
 CalibratedRoom calibrated(const BenchDescription& description) {
     Bench bench = testing::bench_on_kept_light(description, small_bench_product());
     const Mesh& mesh = small_bench_product()->mesh;
-    return {predict_hidden(calibrate_live(bench.ports(), live_options(description)).calibration,
+    return {predict_hidden(calibrate_live(bench.ports(), live_settings(description)).calibration,
                            projector_irradiance(mesh, description.projector.view, {})),
             mockup_mask(mesh, description.projector.view),
             bench.truth().lit,
@@ -97,8 +97,11 @@ TEST(Room, NightlyLightFromTheTableIsNotTakenForTheMockupsOwn) {
     const auto error_of = [](const BenchDescription& description) {
         Bench bench = testing::bench_on_kept_light(description, small_bench_product());
         const Image8 mockup = mockup_mask(small_bench_product()->mesh, description.projector.view);
-        LiveResult live;
-        live.calibration = calibrate_through_ports(bench, small_bench_product(), {}).calibration;
+        CalibrationResult live;
+        live.calibration =
+            calibrate_through_ports(bench.ports(),
+                                    settings_of(bench.description(), small_bench_product()))
+                .calibration;
         return testing::judged(bench, std::move(live), &mockup).comparison.interior;
     };
     BenchDescription room = half_size("room");
@@ -121,7 +124,7 @@ TEST(Room, IsNotLitWhereTheMockupIsKnown) {
             if (drive.values[3 * i + 1]) ever.values[i] = 255;
         show(drive);
     };
-    LiveOptions options = live_options(description);
+    CalibrationSettings options = live_settings(description);
     options.mockup = mockup;
     calibrate_live(ports, options);
     int inside_dark = 0, far_lit = 0;

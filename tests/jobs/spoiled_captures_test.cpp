@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "calibration/colour/colour.h"
+#include "calibration/calibrate_live.h"
 #include "calibration/correspondence/patterns.h"
 #include "session/small_session.h"
 #include "support/kept_light.h"
@@ -138,7 +138,7 @@ std::string said_of(
     const Shots& shots,
     const std::vector<Pattern>& patterns = colour_patterns(kSmallWidth, kSmallHeight, 0, 255)) {
     try {
-        LiveOptions options;
+        CalibrationSettings options;
         options.width = kSmallWidth;
         options.height = kSmallHeight;
         options.patterns = patterns;

@@ -13,14 +13,14 @@
 namespace livery {
 namespace {
 
-using testing::live_options;
+using testing::live_settings;
 using testing::small_bench_description;
 using testing::small_bench_product;
 
 /// Why the calibration was refused, else its warnings.
 std::string said_of(const BenchPorts& ports, const BenchDescription& description) {
     try {
-        const LiveResult result = calibrate_live(ports, live_options(description));
+        const CalibrationResult result = calibrate_live(ports, live_settings(description));
         return "accepted: " + testing::all_warnings(result.calibration);
     } catch (const Refused& refused) {
         return "refused: " + refused.why() + "; " + refused.fix();
@@ -45,7 +45,7 @@ int number_of(const std::string& role) {
             constexpr std::string_view kStart = "photographing ";
             if (stage.starts_with(kStart)) found[std::string(stage.substr(kStart.size()))] = taken;
         };
-        calibrate_live(ports, live_options(description), progress);
+        calibrate_live(ports, live_settings(description), progress);
         return found;
     }();
     return numbers.at(role);

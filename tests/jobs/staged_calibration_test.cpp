@@ -29,7 +29,7 @@ struct Room {
         : bench(testing::bench_on_kept_light(description, small_bench_product())),
           ports(bench.ports()) {
         run.folder = folder / "run";
-        run.request = request_of(description, small_bench_product());
+        run.settings = settings_of(description, small_bench_product());
         const TakePhotograph take = ports.photograph;
         ports.photograph = [this, take](double asked_s) {
             ++photographs;
@@ -80,8 +80,8 @@ TEST(StagedCalibration, KeepsEachStageAndDoesOneAnewAlone) {
     const int all = room.all_photographs;
     EXPECT_TRUE(room.run.made->room);
     EXPECT_LE(all,
-              expected_photographs(room.run.request, CalibrationStage::geometry) +
-                  expected_photographs(room.run.request, CalibrationStage::colour) + 12)
+              expected_photographs(room.run.settings, CalibrationStage::geometry) +
+                  expected_photographs(room.run.settings, CalibrationStage::colour) + 12)
         << "what people are told to expect";
     const RoomGeometry geometry = room.run.room->geometry;
 
@@ -113,7 +113,7 @@ TEST(StagedCalibration, NightlyGoesOnWhereItWasStopped) {
         constexpr int stop_at = 10;
         const int all = stage == CalibrationStage::geometry
                             ? room.all_photographs
-                            : expected_photographs(room.run.request, CalibrationStage::colour);
+                            : expected_photographs(room.run.settings, CalibrationStage::colour);
         forget(room.run, stage);
         room.forget_memory();
         BenchPorts cut = room.ports;
@@ -163,7 +163,7 @@ TEST(StagedCalibration, IsCheckedWithColoursThatNothingWasFittedTo) {
 
 TEST(StagedCalibration, TellsALaterDayWhatChanged) {
     FoundRoom room;
-    const CalibrationOrigin origin = origin_of(*room.run.made, room.run.request);
+    const CalibrationOrigin origin = origin_of(*room.run.made, room.run.settings);
     const auto folder = room.folder / "kept";
     write_setup(folder, room.run.made->calibration, *room.run.made->projector);
     write_origin(folder, origin);
@@ -246,10 +246,8 @@ TEST(StagedCalibration, IsComparedWithAnother) {
 // What the stages leave is a captures folder for `livery calibrate color`.
 TEST(StagedCalibration, LeavesFoldersThatAnybodyCanCalibrateFrom) {
     FoundRoom room;
-    CapturedCalibrationRequest request;
-    request.captures = room.run.folder / "colour";
-    request.map = room.run.folder / "colour" / "map.exr";
-    const ColourCalibration again = calibrate_from_folder(request);
+    const auto colours = room.run.folder / "colour";
+    const ColourCalibration again = calibrate_from_folder({colours, {}, colours / "map.exr"});
     const auto measured = [](const ColourCalibration& calibration) {
         std::size_t count = 0;
         for (const std::uint8_t status : calibration.status.values)

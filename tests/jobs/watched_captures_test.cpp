@@ -25,7 +25,7 @@
 namespace livery {
 namespace {
 
-using testing::live_options;
+using testing::live_settings;
 using testing::small_bench_description;
 using testing::small_bench_product;
 
@@ -389,10 +389,10 @@ TEST(WatchedCaptures, CalibratesWhenTheLastHasCome) {
         for (const std::size_t k : shuffled(card().roles.size(), 3))
             std::filesystem::copy_file(card().file(k), here.path() / card().name(k));
     });
-    LiveOptions options = live_options(small_bench_description());
+    CalibrationSettings options = live_settings(small_bench_description());
     options.patterns = colour_patterns(options.width, options.height, 0, 255);
     std::vector<WatchedState> states;
-    const LiveResult result = calibrate_live(
+    const CalibrationResult result = calibrate_live(
         watched.ports({}, [&](const WatchedState& state) { states.push_back(state); }), options);
     person.join();
     ASSERT_FALSE(states.empty());

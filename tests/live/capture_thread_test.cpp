@@ -67,8 +67,7 @@ struct CaptureRoom {
     CaptureRoom() {
         context.release();
         capture = std::make_unique<CaptureThread>(context, [] {});
-        setup.camera = {CameraChoice::Kind::bench,
-                        testing::small_bench_file(home.folder().path()).string()};
+        setup.camera = {"bench", testing::small_bench_file(home.folder().path()).string()};
         setup.product = find_product("car");
         capture->use(setup);
         wait_until(*capture, [](const CaptureView& view) { return view.live != nullptr; });
@@ -277,7 +276,7 @@ TEST(CaptureThread, SetsACameraAndFitsItsCurve) {
     CaptureThread capture(context, [] {});
     int shown = 0;
     CaptureSetup setup;
-    setup.camera = {CameraChoice::Kind::tethered, responder.port()};
+    setup.camera = {"tethered", responder.port()};
     setup.width = setup.height = 16;
     setup.projector_port = [&](const Progress&, const TellWait&) {
         return [&](const Image8&) { ++shown; };
@@ -366,7 +365,7 @@ TEST(CaptureThread, CompletesAFolderOfPhotographs) {
     std::filesystem::create_directories(card);
     Photographer photographer(card);
     CaptureSetup setup;
-    setup.camera = {CameraChoice::Kind::folder, card.string()};
+    setup.camera = {"folder", card.string()};
     setup.product = testing::small_bench_product();
     setup.projector_view = testing::small_bench_description().projector.view;
     setup.projector = "a projector";
@@ -409,7 +408,7 @@ TEST(CaptureThread, SaysWhyACameraDoesNotOpen) {
     context.release();
     CaptureThread capture(context, [] {});
     CaptureSetup setup;
-    setup.camera = {CameraChoice::Kind::video, (home.folder() / "none.avi").string()};
+    setup.camera = {"video", (home.folder() / "none.avi").string()};
     capture.use(setup);
     const CaptureView view = wait_until(capture, [](const auto& v) { return !v.why.empty(); });
     EXPECT_NE(view.why.find("none.avi"), std::string::npos);

@@ -16,7 +16,7 @@
 
 #include "core/random.h"
 #include "gl/read_back.h"
-#include "jobs/picture.h"
+#include "jobs/comparison.h"
 #include "live/frame_lane.h"
 #include "live/frame_thread_fixture.h"
 #include "support/shading_devices.h"

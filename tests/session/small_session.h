@@ -11,7 +11,7 @@
 
 #include <gtest/gtest.h>
 
-#include "calibration/colour/colour.h"
+#include "calibration/calibrate_live.h"
 #include "compensation/compensation.h"
 #include "compensation/lit_pixels.h"
 #include "core/colour.h"
@@ -73,8 +73,8 @@ inline ImageF smooth_colours(int width, int height, std::uint64_t seed) {
     return wanted;
 }
 
-inline LiveOptions live_options(const BenchDescription& description, int shots = 1) {
-    LiveOptions options;
+inline CalibrationSettings live_settings(const BenchDescription& description, int shots = 1) {
+    CalibrationSettings options;
     options.width = description.projector.view.width;
     options.height = description.projector.view.height;
     options.shots = shots;
@@ -83,7 +83,7 @@ inline LiveOptions live_options(const BenchDescription& description, int shots =
 
 /// What the observer sees of a calibration: smooth colours corrected with it against wanted.
 struct Judged {
-    LiveResult live;
+    CalibrationResult live;
     Comparison comparison;
 };
 
@@ -94,7 +94,7 @@ inline std::string all_warnings(const ColourCalibration& calibration) {
 }
 
 /// In smooth colours over the whole picture, or over the mock-up's pixels alone.
-inline Judged judged(const Bench& bench, LiveResult live, const Image8* mockup = nullptr) {
+inline Judged judged(const Bench& bench, CalibrationResult live, const Image8* mockup = nullptr) {
     Judged result;
     bool masked_is_black = true;
     const ColourCalibration& calibration = live.calibration;
@@ -137,7 +137,7 @@ inline Judged judged(const Bench& bench, LiveResult live, const Image8* mockup =
 /// A new bench of that description, calibrated and judged.
 inline Judged session_on(const BenchDescription& description, int shots = 1) {
     Bench bench = testing::bench_on_kept_light(description, small_bench_product());
-    return judged(bench, calibrate_live(bench.ports(), live_options(description, shots)));
+    return judged(bench, calibrate_live(bench.ports(), live_settings(description, shots)));
 }
 
 /// The small bench with no nuisance, calibrated and judged once for all tests.

@@ -1,10 +1,10 @@
-#include "twin/mirror_ball_stand.h"
-
 #include <cmath>
 #include <numbers>
 
 #include <glm/geometric.hpp>
 #include <gtest/gtest.h>
+
+#include "twin/sphere_stand.h"
 
 namespace livery {
 namespace {

@@ -10,7 +10,6 @@
 #include "core/colour.h"
 #include "core/random.h"
 #include "small_bench.h"
-#include "twin/spectral_paint.h"
 
 namespace livery {
 namespace {

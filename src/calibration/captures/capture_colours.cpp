@@ -9,7 +9,7 @@
 #include <glm/mat3x3.hpp>
 #include <glm/matrix.hpp>
 
-#include "calibration/captures/capture_evidence.h"
+#include "calibration/captures/capture_check.h"
 #include "calibration/colour/colour.h"
 #include "calibration/colour/colour_report.h"
 #include "calibration/colour/mixing.h"

@@ -31,9 +31,7 @@ void add_capture(Captures& captures, RoledPhotograph photograph);
 /// What the photographs so far say of themselves: stripes in each other's place, and all of
 /// check_captures(). `with_stripes`: places are decoded from them. Throws Refused.
 CaptureVerdict judge_captures(const Captures& captures,
-                              int projector_width,
-                              int projector_height,
-                              const ShownDrives& drives,
+                              const CalibrationSettings& settings,
                               bool with_stripes);
 
 /// Where the camera sees each projector pixel, by decode_places(). Adds to `warnings` what is odd
@@ -51,7 +49,7 @@ ColourCalibration calibrate_judged(Captures& captures,
                                    const CaptureVerdict& verdict,
                                    const std::vector<Pattern>& patterns,
                                    const ProjectorToCamera& map,
-                                   const ColourOptions& options,
+                                   const CalibrationSettings& settings,
                                    const Progress& progress = {});
 
 }  // namespace livery

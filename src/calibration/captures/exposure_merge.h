@@ -1,6 +1,8 @@
-// Photographs of one scene with several exposures -> one picture of its light.
+// Photographs of one scene with several exposures -> one picture of its light; and those of one
+// role as one picture that can be compared with other roles'.
 #pragma once
 
+#include "calibration/correspondence/gray_code.h"
 #include "core/bench_ports.h"
 #include "core/image.h"
 
@@ -31,5 +33,16 @@ double clipped_light(const Photograph& photograph);
 
 /// Throws std::invalid_argument for another size.
 void add(const Photograph& photograph, MergedPhotographs& merged);
+
+/// Mean of the channels, NaN where one of them is at 98% of full scale or more: of a clipped fringe
+/// nothing can be said, while stripes are read by their signs.
+ImageF unsaturated_mean(const Photograph& photograph);
+
+/// Mean over the photographs of `role` and their channels, in file units as if exposed like `like`;
+/// one channel; fringes are NaN where they are saturated. Throws FileError for another size than
+/// like's, std::invalid_argument where there is no such photograph.
+ImageF exposed_alike(const std::vector<RoledPhotograph>& photographs,
+                     const std::string& role,
+                     const RoledPhotograph& like);
 
 }  // namespace livery

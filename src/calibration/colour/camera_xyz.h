@@ -8,8 +8,9 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
-#include "calibration/colour/colour.h"
 #include "calibration/colour/mixing.h"
+#include "calibration/settings.h"
+#include "scene/colour_calibration.h"
 
 namespace livery {
 

@@ -15,7 +15,6 @@
 #include "calibration/colour/levels_check.h"
 #include "calibration/colour/mixing.h"
 #include "calibration/colour/response.h"
-#include "calibration/colour/scattered_light.h"
 #include "core/colour.h"
 #include "core/error.h"
 #include "core/parallel.h"
@@ -201,20 +200,20 @@ std::vector<TableSample> table_samples(const ColourSamples& samples,
     return found;
 }
 
-void check_options(const ColourOptions& options) {
-    check_argument(options.dark_drive >= 0 && options.dark_drive < options.bright_drive &&
-                       options.bright_drive <= 255,
-                   "drives s = " + std::to_string(options.dark_drive) + ", t = " +
-                       std::to_string(options.bright_drive) + " are not 0 <= s < t <= 255");
+void check_settings(const CalibrationSettings& settings) {
+    check_argument(settings.dark_drive >= 0 && settings.dark_drive < settings.bright_drive &&
+                       settings.bright_drive <= 255,
+                   "drives s = " + std::to_string(settings.dark_drive) + ", t = " +
+                       std::to_string(settings.bright_drive) + " are not 0 <= s < t <= 255");
     check_argument(
-        options.kernel_bandwidth > 0.0 && options.kernel_bandwidth < 1.0,
-        "kernel bandwidth " + std::to_string(options.kernel_bandwidth) + " is not in 0..1");
-    check_argument(options.mode == ColourMode::paper ||
-                       (options.dark_drive == 0 && options.bright_drive == 255),
+        settings.kernel_bandwidth > 0.0 && settings.kernel_bandwidth < 1.0,
+        "kernel bandwidth " + std::to_string(settings.kernel_bandwidth) + " is not in 0..1");
+    check_argument(settings.mode == ColourMode::paper ||
+                       (settings.dark_drive == 0 && settings.bright_drive == 255),
                    "robust mode needs s = 0 and t = 255, found " +
-                       std::to_string(options.dark_drive) + " and " +
-                       std::to_string(options.bright_drive));
-    const CameraToXyz& xyz = options.camera_to_xyz;
+                       std::to_string(settings.dark_drive) + " and " +
+                       std::to_string(settings.bright_drive));
+    const CameraToXyz& xyz = settings.camera_to_xyz;
     if (!xyz.has_primaries && !xyz.origin.empty())
         check_argument(std::isfinite(condition_number(xyz.xyz_from_camera)) &&
                            condition_number(xyz.xyz_from_camera) < 1e6,
@@ -226,9 +225,9 @@ void check_options(const ColourOptions& options) {
 ColourCalibration calibrate_colour(const std::vector<RoledPhotograph>& captures,
                                    const std::vector<Pattern>& patterns,
                                    const ProjectorToCamera& map,
-                                   const ColourOptions& options,
+                                   const CalibrationSettings& settings,
                                    const Progress& progress) {
-    check_options(options);
+    check_settings(settings);
     progress.update(0.0, "reading the photographs through the map");
     const ColourSamples samples = sample_colours(captures, map);
     const Pattern& levels = pattern_of(patterns, "gray-levels", samples);
@@ -253,12 +252,12 @@ ColourCalibration calibrate_colour(const std::vector<RoledPhotograph>& captures,
         refuse_not_additive(pooled.additivity_error,
                             total(pooled.bright) / total(pooled.red + pooled.green + pooled.blue));
     }
-    if (!additive && options.mode == ColourMode::paper)
+    if (!additive && settings.mode == ColourMode::paper)
         throw Refused("the projector is not additive (" + percent(pooled.additivity_error) +
                           ") and the published method has no model for that",
                       "use --mode robust, which fits the mosaics of colours, or switch the "
                       "projector to its sRGB or cinema mode");
-    PixelMixing mixing = options.mode == ColourMode::paper
+    PixelMixing mixing = settings.mode == ColourMode::paper
                              ? mix_by_pixel(samples)
                              : mix_robustly(samples, pooled, additive);
     const std::vector<PixelStatus> status = judge(samples, mixing);
@@ -277,7 +276,7 @@ ColourCalibration calibrate_colour(const std::vector<RoledPhotograph>& captures,
         for (const PixelStatus s : status) usable.push_back(s == PixelStatus::measured);
         std::array<LevelCurve, 3> curves;
         const LevelsSamples seen{samples, mixing, usable, levels, centre};
-        if (options.mode == ColourMode::robust) scattered = scattered_light(seen);
+        if (settings.mode == ColourMode::robust) scattered = scattered_light(seen);
         for (int k = 0; k < 3; ++k) {
             const auto channel = response_samples(seen, scattered, k);
             if (channel.size() < 256)
@@ -288,18 +287,18 @@ ColourCalibration calibrate_colour(const std::vector<RoledPhotograph>& captures,
             const LevelCurve measured = level_means(channel);
             const LevelCurve smooth = smooth_levels(measured);
             curves[static_cast<std::size_t>(k)] = smooth;
-            if (options.mode == ColourMode::robust) continue;
+            if (settings.mode == ColourMode::robust) continue;
             // N runs from drive 0 to 255, of which S and T are only two: N' = (N - first) / range
-            const bool whole = options.dark_drive == 0 && options.bright_drive == 255;
+            const bool whole = settings.dark_drive == 0 && settings.bright_drive == 255;
             const double first = whole ? 0.0 : smooth.n[0], last = whole ? 1.0 : smooth.n[255];
             calibration.response[static_cast<std::size_t>(k)] =
-                kernel_response(channel, options.kernel_bandwidth, first, last);
+                kernel_response(channel, settings.kernel_bandwidth, first, last);
             for (std::size_t i = 0; i < status.size(); ++i) {
                 mixing.dark[i][k] += static_cast<float>(first) * mixing.span[i][k];
                 mixing.span[i][k] *= static_cast<float>(last - first);
             }
         }
-        if (options.mode == ColourMode::robust) {
+        if (settings.mode == ColourMode::robust) {
             const LevelsVerdict verdict = check_levels(seen, scattered, curves);
             calibration.warnings = verdict.warnings;
             response_error = verdict.unexplained;
@@ -338,7 +337,7 @@ ColourCalibration calibrate_colour(const std::vector<RoledPhotograph>& captures,
     }
 
     progress.update(0.8, "relating the camera to XYZ");
-    const CameraToXyz& xyz = options.camera_to_xyz;
+    const CameraToXyz& xyz = settings.camera_to_xyz;
     if (xyz.has_primaries) {
         const CameraPrimaries camera =
             primaries_at(samples, mixing, status, share_of_channel, xyz.measured_at_px);
@@ -354,13 +353,12 @@ ColourCalibration calibrate_colour(const std::vector<RoledPhotograph>& captures,
     calibration.width = samples.width;
     calibration.height = samples.height;
     calibration.created = utc_now();
-    calibration.mode = options.mode == ColourMode::paper ? "paper" : "robust";
-    calibration.made_with = options.made_with;
-    calibration.dark_drive = options.dark_drive;
-    calibration.bright_drive = options.bright_drive;
+    calibration.mode = settings.mode == ColourMode::paper ? "paper" : "robust";
+    calibration.made_with = settings.made_with;
+    calibration.dark_drive = settings.dark_drive;
+    calibration.bright_drive = settings.bright_drive;
     fill_planes(samples, mixing, status, map, calibration);
     report(mixing, status, pooled, response_error, !additive, calibration);
-    seal(calibration);
     progress.update(1.0, "colour calibration done");
     return calibration;
 }

@@ -7,7 +7,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "calibration/correspondence/exposed_alike.h"
+#include "calibration/captures/exposure_merge.h"
 #include "calibration/correspondence/gray_code.h"
 #include "calibration/correspondence/patterns.h"
 #include "core/error.h"

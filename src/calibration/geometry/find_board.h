@@ -1,4 +1,5 @@
-// A board in a photograph.
+// A board in a photograph: a chessboard, or a ChArUco board, whose white squares hold markers, so
+// that each corner is known by itself.
 #pragma once
 
 #include <optional>
@@ -7,6 +8,7 @@
 
 #include <glm/vec2.hpp>
 
+#include "calibration/geometry/board.h"
 #include "core/image.h"
 
 namespace livery {
@@ -39,5 +41,25 @@ double edge_width_px(const Image8& grey,
 
 /// Dark quadrilaterals on brighter ground, clockwise, four corners each: what markers look like.
 std::vector<glm::dvec2> find_quadrilaterals(const Image8& grey);
+
+/// A marker that was read: its corners in the picture, the marker's upper left one first, clockwise
+/// (centres at halves).
+struct SeenMarker {
+    int number = 0;
+    std::vector<glm::dvec2> corners_px;
+};
+
+/// Markers numbered below `count` among quadrilaterals of dark borders (four corners each,
+/// clockwise). What is no marker is left out; a number may come twice.
+std::vector<SeenMarker> read_markers(const Image8& grey,
+                                     std::span<const glm::dvec2> quadrilaterals_px,
+                                     int count);
+
+/// Inner corners of the board, row by row, to a fraction of a pixel (centres at halves): those
+/// between two markers that were read and lie as the board has them (Garrido-Jurado et al.,
+/// Automatic generation and detection of highly reliable fiducial markers, 2014). Empty where fewer
+/// than three markers agree on where the board is. Throws FileError where the module that links
+/// OpenCV is missing, std::invalid_argument for a board that is no ChArUco board.
+std::vector<std::optional<glm::dvec2>> find_charuco(const Image8& grey, const Board& board);
 
 }  // namespace livery

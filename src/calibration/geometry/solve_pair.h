@@ -1,18 +1,28 @@
-// A board in several poses, seen by camera and projector -> both lenses and where they stand.
+// How well the lenses of a camera and a projector and the pose between them are known, together.
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include <glm/vec2.hpp>
 
-#include "calibration/geometry/pair_information.h"
 #include "core/progress.h"
 #include "scene/view.h"
 
 namespace livery {
+
+/// A lens changes in its relative focal length, its principal point (pixels) and its distortion k1,
+/// k2, p1, p2, k3; the pose between the two in a small turn (rad), then a shift (mm), of
+/// camera_from_projector.
+inline constexpr int kLensTerms = 8, kPoseTerms = 6;
+inline constexpr int kPairTerms = 2 * kLensTerms + kPoseTerms;
+
+/// Inverse covariance of those changes, row by row: projector's lens, camera's lens, pose between
+/// them.
+using PairInformation = std::array<double, static_cast<std::size_t>(kPairTerms* kPairTerms)>;
 
 /// One pose of the board: point for point on the board's plane, in the camera's picture and in the
 /// projector's (pixel centres at halves).
@@ -55,5 +65,19 @@ PairSolution solve_pair(std::span<const BoardSight> sights,
 /// RMS distance in the projector of a sight that was not fitted: the camera finds the board's pose
 /// alone, its points are projected. Nothing where a point falls behind a lens.
 std::optional<double> held_out_px(const PairSolution& solution, const BoardSight& sight);
+
+struct CheckedPair {
+    PairSolution solution;            ///< of all sights
+    std::vector<double> held_out_px;  ///< a sight, by the solution of the others
+    double held_out_rms_px = 0.0;     ///< over the sights
+};
+
+/// solve_pair(), then once more without each sight (leave-one-out). Throws Refused as solve_pair(),
+/// for fewer than four sights, and where the others do not determine the lenses. Cancelled ends it
+/// at the next iteration of the fit it is in.
+CheckedPair solve_leaving_each_out(std::span<const BoardSight> sights,
+                                   PictureSize camera,
+                                   PictureSize projector,
+                                   const Progress& progress = {});
 
 }  // namespace livery

@@ -23,7 +23,7 @@ namespace livery {
 namespace {
 
 constexpr int kWantedPairs = 2500;  // correspondences a sight
-constexpr int kRounds = 12;
+constexpr int kRefinements = 12;
 
 Rigid3 moved(const double* six, const Rigid3& pose) {
     const glm::dmat3 turn = rotation_of({six[0], six[1], six[2]});
@@ -370,8 +370,8 @@ PixelRefinement refine_on_pixels(const Mesh& mesh,
     double within_px = 0.03 * projector.width, sigma_px = 2.0, together = 1.0;
     PixelRefinement result;
     std::vector<double> before;
-    for (int round = 0; round < kRounds; ++round) {
-        progress.update(static_cast<double>(round) / kRounds, "refining pose and lenses");
+    for (int round = 0; round < kRefinements; ++round) {
+        progress.update(static_cast<double>(round) / kRefinements, "refining pose and lenses");
         std::vector<double> errors;
         const std::vector<Correspondence> found =
             correspondences_of(mesh, tracer, sights, given, state, ignored, within_px, &errors);
@@ -445,7 +445,7 @@ PixelRefinement refine_on_pixels(const Mesh& mesh,
         together = pixels_that_err_together(solved);
         const bool settled =
             round > 3 && summary.initial_cost - summary.final_cost < 1e-4 * summary.initial_cost;
-        if (!settled && round + 1 < kRounds) continue;
+        if (!settled && round + 1 < kRefinements) continue;
         describe(solved, state, prior, pair_before(0), result);
         break;
     }

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "calibration/geometry/pair_information.h"
+#include "calibration/geometry/solve_pair.h"
 #include "calibration/scan/scan.h"
 #include "core/progress.h"
 #include "mesh/mesh.h"

@@ -7,10 +7,9 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
-#include "calibration/registration/closest_points.h"
-#include "calibration/registration/nearest_sample.h"
-#include "calibration/registration/pair_features.h"
 #include "calibration/registration/rotation.h"
+#include "calibration/registration/scan_poses.h"
+#include "calibration/registration/surface_samples.h"
 #include "core/error.h"
 #include "core/parallel.h"
 

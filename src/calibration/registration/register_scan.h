@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "calibration/registration/pixel_refinement.h"
-#include "calibration/registration/pose_evidence.h"
+#include "calibration/registration/scan_poses.h"
 #include "calibration/registration/symmetry.h"
 #include "calibration/scan/scan.h"
 #include "core/progress.h"

@@ -1,7 +1,9 @@
-// Surfaces as points with normals, evenly spread: what alignment compares.
+// Surfaces as points with normals, evenly spread, the nearest of them, and iterative closest
+// points: a guess made exact.
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -9,6 +11,7 @@
 
 #include "calibration/scan/scan.h"
 #include "mesh/mesh.h"
+#include "scene/view.h"
 #include "tracing/tracer.h"
 
 namespace livery {
@@ -52,5 +55,35 @@ SurfaceSamples beside_plane(const SurfaceSamples& samples,
 
 /// Squares of the plane on which most of the samples lie.
 std::size_t largest_plane(const SurfaceSamples& samples, double spacing_mm);
+
+/// A k-d tree (Bentley 1975). May be asked by several threads at once.
+class NearestSample {
+  public:
+    explicit NearestSample(std::vector<glm::dvec3> points);
+    ~NearestSample();
+    /// Its index; nothing where none is within `most_mm`.
+    std::optional<std::uint32_t> of(const glm::dvec3& place, double most_mm) const;
+
+  private:
+    struct Tree;
+    std::unique_ptr<const Tree> tree_;
+};
+
+struct Aligned {
+    Rigid3 scan_from_mesh;
+    double rms_mm = 0.0;      ///< of the inliers' distances from the mesh's planes
+    std::size_t inliers = 0;  ///< scan samples
+};
+
+/// Point to plane (Chen and Medioni 1992), trimmed: a scan sample counts while its nearest mesh
+/// sample is within a reach that shrinks from `from_mm` to `to_mm`, and faces the same way; less
+/// the farther off its plane it is (Tukey). `tree` is of mesh.points.
+Aligned closest_points(const SurfaceSamples& mesh,
+                       const NearestSample& tree,
+                       const SurfaceSamples& scan,
+                       const Rigid3& scan_from_mesh,
+                       double from_mm,
+                       double to_mm,
+                       int iterations);
 
 }  // namespace livery

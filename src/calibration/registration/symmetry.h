@@ -4,7 +4,6 @@
 #include <optional>
 #include <vector>
 
-#include "calibration/registration/nearest_sample.h"
 #include "calibration/registration/surface_samples.h"
 #include "scene/view.h"
 

@@ -12,7 +12,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include "capture/camera_words.h"
+#include "capture/camera.h"
 #include "capture/captures_folder.h"
 #include "capture/gphoto/gphoto_camera.h"
 #include "core/image_io.h"

@@ -12,7 +12,7 @@
 #include "core/utf8.h"
 #include "evaluation/report/report_document.h"
 #include "evaluation/report/round_report.h"
-#include "jobs/calibrate/calibration_grade.h"
+#include "jobs/calibrate/calibration_check.h"
 #include "scene/colour_calibration.h"
 
 namespace livery {

@@ -8,7 +8,7 @@
 #include "core/image_io.h"
 #include "core/paths.h"
 #include "core/pictures/picture_means.h"
-#include "jobs/picture.h"
+#include "jobs/comparison.h"
 #include "jobs/seat_errors.h"
 #include "live/seat_error_thread.h"
 

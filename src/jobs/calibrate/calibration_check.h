@@ -1,8 +1,9 @@
-// Whether a calibration shows what is wanted: corrected colours, photographed; and how far two
-// calibrations are apart.
+// How good a calibration is: its own figures on the scale of docs/calibration.md, whether it shows
+// what is wanted (corrected colours, photographed), and how far two calibrations are apart.
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "calibration/correspondence/gray_code.h"
@@ -15,6 +16,12 @@
 #include "scene/view.h"
 
 namespace livery {
+
+/// What it was made with, its residuals and its warnings, each with its name.
+std::vector<std::pair<std::string, std::string>> calibration_figures(const ColourCalibration& c);
+
+/// One a figure, in the order of the docs' table. Figures that are not finite are bad.
+std::vector<GradedFigure> grade_figures(const ColourCalibration& calibration);
 
 struct CalibrationDifference {
     /// What the older one's drives show if the newer one is right, against what is wanted: muted

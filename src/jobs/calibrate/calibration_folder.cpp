@@ -39,11 +39,11 @@ void write_or_remove(const std::filesystem::path& file, const ImageF& plane) {
 }
 
 ImageF around_of(const RoomPose& room, const Mesh& mesh) {
-    ImageF around = room.map.camera_px;
+    ImageF around = room.seen.map.camera_px;
     if (around.empty()) return around;
     const Image8 mockup = mockup_mask(mesh, room.geometry.projector);
     for (std::size_t i = 0; i < mockup.values.size(); ++i)
-        if (mockup.values[i] || room.map.edge.values[i])
+        if (mockup.values[i] || room.seen.map.edge.values[i])
             around.values[2 * i] = around.values[2 * i + 1] =
                 std::numeric_limits<float>::quiet_NaN();
     return around;
@@ -51,24 +51,18 @@ ImageF around_of(const RoomPose& room, const Mesh& mesh) {
 
 }  // namespace
 
-CalibrationOrigin origin_of(const BenchCalibration& made, const BenchCalibrationRequest& request) {
+CalibrationOrigin origin_of(const CalibrationResult& made, const CalibrationSettings& settings) {
     CalibrationOrigin origin;
-    if (request.product) {
-        origin.product = request.product->name;
-        origin.shape = shape_hash(request.product->mesh);
-    }
-    origin.made_with = request.made_with;
+    if (settings.product) origin = origin_for(*settings.product, settings.made_with);
+    origin.made_with = settings.made_with;
     if (made.room) {
         origin.room = made.room->geometry;
-        if (request.product) origin.around = around_of(*made.room, request.product->mesh);
+        if (settings.product) origin.around = around_of(*made.room, settings.product->mesh);
     }
-    if (!made.live.white.image.empty())
-        origin.ends =
-            drift_reference(made.live.white, made.live.black, made.live.latency_photographs);
-    origin.capture_seconds =
-        made.live.capture_seconds + (made.room ? made.room->capture_seconds : 0.0);
-    origin.solve_seconds = made.live.solve_seconds + made.predict_seconds +
-                           (made.room ? made.room->solve_seconds : 0.0);
+    if (!made.white.image.empty())
+        origin.ends = drift_reference(made.white, made.black, made.latency_photographs);
+    origin.capture_seconds = made.all_captured().all;
+    origin.solve_seconds = made.all_solve_seconds();
     return origin;
 }
 

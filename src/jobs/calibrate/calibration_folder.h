@@ -33,7 +33,7 @@ struct CalibrationOrigin {
 };
 
 /// Of a calibration that was just made.
-CalibrationOrigin origin_of(const BenchCalibration& made, const BenchCalibrationRequest& request);
+CalibrationOrigin origin_of(const CalibrationResult& made, const CalibrationSettings& settings);
 
 /// Of one for a product, of whose making nothing else is known.
 CalibrationOrigin origin_for(const Product& product, const std::string& made_with);

@@ -21,7 +21,7 @@ constexpr int kToMeet = 20;
 
 /// The stage's recording, opened for as long as it runs.
 Recording recording_of(const StagedCalibration& run, CalibrationStage stage) {
-    return Recording(folder_of(run, stage), run.request.made_with);
+    return Recording(folder_of(run, stage), run.settings.made_with);
 }
 
 void remove_folder(const std::filesystem::path& folder) {
@@ -47,9 +47,8 @@ bool are_nearly_alike(const Image8& a, const Image8& b) {
 
 /// What is lit for the colours. A pose that was found again, hardly another, lights what the
 /// photographs that are there were lit with: these stay right.
-Image8 lit_for(const BenchCalibrationRequest& request, const std::filesystem::path& colours) {
-    if (!request.projector || !request.product) return {};
-    Image8 lit = mockup_mask(request.product->mesh, *request.projector);
+Image8 lit_for(const CalibrationSettings& settings, const std::filesystem::path& colours) {
+    Image8 lit = mockup_of(settings);
     const auto file = colours / "lit.png";
     std::error_code error;
     if (std::filesystem::exists(file, error)) {
@@ -65,13 +64,13 @@ Image8 lit_for(const BenchCalibrationRequest& request, const std::filesystem::pa
 }
 
 /// A place that was found for a mock-up that stands elsewhere now would spoil the colours.
-void check_that_nothing_moved(const RoomPose& room, const BenchCalibration& made) {
-    if (room.white.image.empty() || made.live.white.image.empty()) return;
+void check_that_nothing_moved(const RoomPose& room, const CalibrationResult& made) {
+    if (room.seen.white.image.empty() || made.white.image.empty()) return;
     constexpr double kMoved_px = 1.0;  // what a look for drift calls Bad
     try {
         const Drift drift =
-            drift_where_both_lit(drift_reference(room.white, room.black, 0),
-                                 drift_reference(made.live.white, made.live.black, 0));
+            drift_where_both_lit(drift_reference(room.seen.white, room.seen.black, 0),
+                                 drift_reference(made.white, made.black, 0));
         if (drift.lost <= drift.blocks && drift.shift_median_px < kMoved_px) return;
         throw Refused(
             drift.lost > drift.blocks
@@ -89,13 +88,13 @@ void check_that_nothing_moved(const RoomPose& room, const BenchCalibration& made
 }  // namespace
 
 std::filesystem::path folder_of(const StagedCalibration& run, CalibrationStage stage) {
-    if (!finds_room(run.request)) return run.folder;
+    if (!finds_room(run.settings)) return run.folder;
     return run.folder / (stage == CalibrationStage::geometry ? "geometry" : "colour");
 }
 
 bool can_go_on(const StagedCalibration& run, CalibrationStage stage) {
     if (stage == CalibrationStage::check) return false;
-    if (stage == CalibrationStage::geometry && !finds_room(run.request)) return false;
+    if (stage == CalibrationStage::geometry && !finds_room(run.settings)) return false;
     std::error_code error;
     const auto folder = folder_of(run, stage);
     return std::filesystem::exists(folder / "recording.json", error) &&
@@ -118,30 +117,28 @@ void find_geometry(StagedCalibration& run,
                    const Progress& progress) {
     Recording recording = recording_of(run, CalibrationStage::geometry);
     if (meet) meet(recording);
-    BenchCalibrationRequest request = run.request;
-    request.room_recording = &recording;
     run.made.reset();
     run.check.reset();
-    run.room = find_room_for(ports, request, progress);
+    run.room = find_room_for(ports, run.settings, progress, &recording);
 }
 
 void find_colours(StagedCalibration& run,
                   const BenchPorts& ports,
                   const MeetRecording& meet,
                   const Progress& progress) {
-    const bool finds = finds_room(run.request);
+    const bool finds = finds_room(run.settings);
     const bool first = finds && !run.room;
     if (first) find_geometry(run, ports, meet, progress.part(0.0, 0.4));
     Recording recording = recording_of(run, CalibrationStage::colour);
     if (meet) meet(recording);
-    BenchCalibrationRequest request = finds ? with_room(run.request, *run.room) : run.request;
-    request.recording = &recording;
-    if (finds) request.lit = lit_for(request, recording.folder());
+    CalibrationSettings settings = finds ? with_room(run.settings, *run.room) : run.settings;
+    if (finds) settings.mockup = lit_for(settings, recording.folder());
     run.check.reset();
     run.made.reset();
-    BenchCalibration made;
+    CalibrationResult made;
     try {
-        made = calibrate_through_ports(ports, request, first ? progress.part(0.4, 1.0) : progress);
+        made = calibrate_through_ports(
+            ports, std::move(settings), first ? progress.part(0.4, 1.0) : progress, &recording);
     } catch (const Refused& refused) {
         if (!finds) throw;
         // With a map of where things were, whatever is photographed shows something else.
@@ -153,37 +150,37 @@ void find_colours(StagedCalibration& run,
         check_that_nothing_moved(*run.room, made);
         made.room = run.room;
         // Of the mock-up alone, as it was lit.
-        write_map(recording.folder() / "map.exr", made.live.map);
+        write_map(recording.folder() / "map.exr", made.map);
     }
     run.made = std::move(made);
 }
 
 bool can_check(const StagedCalibration& run) {
-    return run.made && run.made->projector && run.request.product &&
-           !run.made->live.white.image.empty();
+    return run.made && run.made->projector && run.settings.product &&
+           !run.made->white.image.empty();
 }
 
 void check_colours(StagedCalibration& run, const BenchPorts& ports, const Progress& progress) {
     check_argument(can_check(run), "a check needs colours, a camera and the mock-up's pose");
-    const BenchCalibration& made = *run.made;
+    const CalibrationResult& made = *run.made;
     run.check = check_calibration(ports,
                                   made.calibration,
-                                  made.live.map,
-                                  mockup_mask(run.request.product->mesh, *made.projector),
-                                  made.live.white,
-                                  made.live.latency_photographs,
+                                  made.map,
+                                  mockup_mask(run.settings.product->mesh, *made.projector),
+                                  made.white,
+                                  made.latency_photographs,
                                   progress);
 }
 
-int expected_photographs(const BenchCalibrationRequest& request, CalibrationStage stage) {
+int expected_photographs(const CalibrationSettings& settings, CalibrationStage stage) {
     const int geometry =
-        static_cast<int>(place_roles(request.places, request.width, request.height).size());
-    const int colours = 6 * request.colour_shots;
+        static_cast<int>(place_roles(settings.places, settings.width, settings.height).size());
+    const int colours = 6 * settings.shots;
     switch (stage) {
         case CalibrationStage::geometry:
-            return finds_room(request) ? kToMeet + geometry : 0;
+            return finds_room(settings) ? kToMeet + geometry : 0;
         case CalibrationStage::colour:
-            return kToMeet + colours + (finds_room(request) ? 2 : geometry);
+            return kToMeet + colours + (finds_room(settings) ? 2 : geometry);
         case CalibrationStage::check:
             return 4;
     }

@@ -22,9 +22,9 @@ struct StagedCalibration {
     /// Of the photographs: those of the geometry and of the colours lie in `geometry` and `colour`
     /// below it, or, where no geometry is to be found, all in it.
     std::filesystem::path folder;
-    BenchCalibrationRequest request;  ///< its recordings are not looked at
+    CalibrationSettings settings;
     std::optional<RoomPose> room;
-    std::optional<BenchCalibration> made;
+    std::optional<CalibrationResult> made;
     std::optional<CalibrationCheck> check;
 };
 
@@ -38,8 +38,8 @@ bool can_go_on(const StagedCalibration& run, CalibrationStage stage);
 /// Forgets what a stage photographed and found, and all that follows from it.
 void forget(StagedCalibration& run, CalibrationStage stage);
 
-/// Where everything stands; nothing is photographed that is there. The request must be one that
-/// finds_room(). Throws as find_room_for().
+/// Where everything stands; nothing is photographed that is there. The settings must be such
+/// that finds_room(). Throws as find_room_for().
 void find_geometry(StagedCalibration& run,
                    const BenchPorts& ports,
                    const MeetRecording& meet,
@@ -56,7 +56,7 @@ void check_colours(StagedCalibration& run, const BenchPorts& ports, const Progre
 bool can_check(const StagedCalibration& run);
 
 /// Photographs that a stage takes, when all goes well.
-int expected_photographs(const BenchCalibrationRequest& request, CalibrationStage stage);
+int expected_photographs(const CalibrationSettings& settings, CalibrationStage stage);
 
 /// What the geometry is worth.
 std::vector<GradedFigure> grade_figures(const RoomGeometry& room);

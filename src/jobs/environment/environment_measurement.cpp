@@ -11,14 +11,13 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
-#include "calibration/environment/ball_outline.h"
+#include "calibration/environment/light_picture.h"
 #include "calibration/environment/mirror_ball.h"
-#include "calibration/environment/panorama.h"
-#include "capture/environment_folder.h"
+#include "calibration/settings.h"
+#include "capture/stand_folders.h"
 #include "core/colour.h"
 #include "core/error.h"
 #include "core/image_io.h"
-#include "jobs/camera_to_xyz_file.h"
 #include "jobs/merged_captures.h"
 
 namespace livery {

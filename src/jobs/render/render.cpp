@@ -12,7 +12,7 @@
 #include "core/colour.h"
 #include "core/error.h"
 #include "core/image_io.h"
-#include "jobs/picture.h"
+#include "jobs/comparison.h"
 #include "radiance/renderer.h"
 
 namespace livery {

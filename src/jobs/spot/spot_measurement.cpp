@@ -10,8 +10,8 @@
 #include <fmt/format.h>
 #include <glm/geometric.hpp>
 
-#include "calibration/spot/plane_pixels.h"
-#include "capture/spot_folder.h"
+#include "calibration/spot/spot_of_light.h"
+#include "capture/stand_folders.h"
 #include "core/angles.h"
 #include "core/error.h"
 #include "core/paths.h"

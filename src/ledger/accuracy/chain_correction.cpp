@@ -11,7 +11,6 @@
 #include "core/paths.h"
 #include "jobs/calibrate/bench_calibration.h"
 #include "jobs/comparison.h"
-#include "jobs/picture.h"
 #include "ledger/accuracy/chain_precision.h"
 #include "ledger/accuracy/chain_steps.h"
 #include "radiance/renderer.h"
@@ -82,29 +81,29 @@ std::vector<ImageF> drawn(const std::vector<std::string>& looks,
 }
 
 /// In the order of kCalibrations. Places are photographed once, in a calibration before them.
-std::vector<BenchCalibration> calibrations(Bench& bench,
-                                           const std::shared_ptr<const Product>& product,
-                                           const Progress& progress) {
-    BenchCalibrationRequest request = request_of(bench.description(), product);
+std::vector<CalibrationResult> calibrations(Bench& bench,
+                                            const std::shared_ptr<const Product>& product,
+                                            const Progress& progress) {
+    CalibrationSettings request = settings_of(bench.description(), product);
     request.data_sheets.reset();
     request.turned_as.reset();
     request.projector = bench.description().projector.view;
-    request.colour_shots = 1;
+    request.shots = 1;
     const BenchPorts ports = bench.ports();
-    request.map = calibrate_through_ports(ports, request, progress.part(0.0, 0.5)).live.map;
-    std::vector<BenchCalibration> all;
+    request.map = calibrate_through_ports(ports, request, progress.part(0.0, 0.5)).map;
+    std::vector<CalibrationResult> all;
     for (const WayToCalibrate& one : kCalibrations) {
         request.mode = one.mode;
-        request.colour_shots = one.photographs;
+        request.shots = one.photographs;
         all.push_back(calibrate_through_ports(ports, request, Progress{{}, progress.stop}));
     }
     return all;
 }
 
 /// 255 where all of them correct.
-Image8 corrected_by_all(const std::vector<BenchCalibration>& all) {
+Image8 corrected_by_all(const std::vector<CalibrationResult>& all) {
     Image8 mask = corrected_pixels(all.front().calibration);
-    for (const BenchCalibration& one : all) {
+    for (const CalibrationResult& one : all) {
         const Image8 its = corrected_pixels(one.calibration);
         for (std::size_t i = 0; i < mask.values.size(); ++i) mask.values[i] &= its.values[i];
     }
@@ -154,7 +153,8 @@ void measure_corrections(const BenchDescription& description,
                          const Progress& progress) {
     const auto product = find_product(description.product.string());
     Bench bench(description, product, progress.part(0.0, 0.1));
-    const std::vector<BenchCalibration> all = calibrations(bench, product, progress.part(0.1, 0.7));
+    const std::vector<CalibrationResult> all =
+        calibrations(bench, product, progress.part(0.1, 0.7));
     const ColourCalibration& usual = all.at(kUsual).calibration;
     const double white_y = design_white_luminance(
         usual, kDesignWhitePercentile, mockup_mask(product->mesh, description.projector.view));
@@ -173,10 +173,10 @@ void measure_corrections(const BenchDescription& description,
     set_errors(*row++, judge.errors(true, [](const ImageF& working) {
         return srgb_from_working(working);
     }));
-    for (const BenchCalibration& one : all) {
+    for (const CalibrationResult& one : all) {
         progress.check_stop();
         const CompensationTable table = bake(one.calibration, white_y);
-        row->ms = 1000.0 * (one.live.solve_seconds + one.predict_seconds);
+        row->ms = 1000.0 * (one.solve_seconds + one.predict_seconds);
         set_errors(*row++, judge.errors(true, [&](const ImageF& working) {
             return compensate(table, working);
         }));

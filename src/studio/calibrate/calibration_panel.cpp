@@ -12,8 +12,8 @@
 
 #include "core/error.h"
 #include "core/paths.h"
+#include "jobs/calibrate/calibration_check.h"
 #include "jobs/calibrate/calibration_folder.h"
-#include "jobs/calibrate/calibration_grade.h"
 #include "studio/studio.h"
 
 namespace livery {

@@ -78,9 +78,7 @@ std::optional<Monitor> projector_monitor(const Studio& studio) {
     return find_monitor(studio.monitors, studio.projector_monitor);
 }
 
-bool has_own_projector(const CameraChoice& choice) {
-    return choice.kind == CameraChoice::Kind::bench;
-}
+bool has_own_projector(const CameraChoice& choice) { return traits_of(choice).is_simulated; }
 
 /// Where the projector stands, as far as the calibration in use knows and the monitor agrees.
 std::optional<View> known_pose(const Studio& studio) {
@@ -163,7 +161,7 @@ void ask_for_folder(Studio& studio) {
     question.title = "Where will the photographs be copied?";
     question.action = "Choose";
     question.then = [&studio](const std::filesystem::path& folder) {
-        choose(studio, {CameraChoice::Kind::folder, std::filesystem::absolute(folder).string()});
+        choose(studio, {"folder", std::filesystem::absolute(folder).string()});
     };
     studio.file_dialog->ask(std::move(question));
 }

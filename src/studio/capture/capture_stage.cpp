@@ -170,7 +170,7 @@ bool draw_capture_stage(Studio& studio) {
     forget_textures(state);
     const ImVec2 space = ImGui::GetContentRegionAvail();
     const bool has_tiles = !view.tiles.empty();
-    const bool by_hand = state.chosen && state.chosen->kind == CameraChoice::Kind::folder;
+    const bool by_hand = state.chosen && traits_of(*state.chosen).is_by_hand;
     const char* const live = by_hand ? "Photographs appear as they are copied"
                              : view.doing == Doing::nothing ? "No camera yet: choose one"
                              : view.doing == Doing::opening ? "Opening the camera"

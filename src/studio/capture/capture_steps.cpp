@@ -171,7 +171,7 @@ void draw_next(Studio& studio, bool ready) {
     CaptureThread& capture = *studio.capture;
     const CapturePanelState& state = studio.panels.of<CapturePanelState>();
     const CaptureView& view = state.view;
-    const bool by_hand = state.chosen->kind == CameraChoice::Kind::folder;
+    const bool by_hand = traits_of(*state.chosen).is_by_hand;
     const auto next = next_step(view);
     const bool finished = view.finished && view.step(CaptureStep::colour).done;
     begin_disabled(!ready);
@@ -256,7 +256,7 @@ void draw_step(Studio& studio, const StepWords& words, bool ready) {
     ImVec4 colour = colours::dim_text;
     const char* mark = "○";
     if (!step.called_for) {
-        const bool by_hand = state.chosen->kind == CameraChoice::Kind::folder;
+        const bool by_hand = traits_of(*state.chosen).is_by_hand;
         shown += words.step != CaptureStep::geometry ? ": not here"
                  : by_hand                           ? ": with the colours"
                                                      : ": where it stands is given";
@@ -328,7 +328,7 @@ std::vector<std::pair<std::string, const CaptureStepView*>> named_capture_steps(
 void draw_capture_steps(Studio& studio, bool can_show) {
     CapturePanelState& state = studio.panels.of<CapturePanelState>();
     const CaptureView& view = state.view;
-    const bool by_hand = state.chosen->kind == CameraChoice::Kind::folder;
+    const bool by_hand = traits_of(*state.chosen).is_by_hand;
     const bool ready =
         can_show && view.doing != CaptureView::Doing::opening && (!view.camera.empty() || by_hand);
     if (is_busy(view)) {

@@ -224,7 +224,7 @@ std::string display_facts() {
 /// CameraFault.
 std::string camera_facts() {
     std::string text;
-    for (const ListedCamera& camera : found_cameras()) {
+    for (const ListedCamera& camera : list_cameras(false)) {
         text += camera.choice + ": " + camera.name + "\n";
         if (!camera.problem.empty()) text += "    " + camera.problem + ": " + camera.fix + "\n";
         // The driver's own name for it

@@ -7,7 +7,7 @@
 #include <imgui.h>
 
 #include "core/log.h"
-#include "jobs/picture.h"
+#include "jobs/comparison.h"
 #include "studio/drawing.h"
 #include "studio/seats/seats_panel.h"
 #include "studio/studio.h"

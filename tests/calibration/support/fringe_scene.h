@@ -10,8 +10,8 @@
 
 #include <glm/vec2.hpp>
 
-#include "calibration/correspondence/fringes.h"
 #include "calibration/correspondence/gray_code.h"
+#include "calibration/correspondence/patterns.h"
 #include "core/random.h"
 
 namespace livery::testing {

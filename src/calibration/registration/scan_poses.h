@@ -1,14 +1,33 @@
-// How much of a scan a pose explains, and what in the scan contradicts it.
+// Where a product may stand in a scan, from no starting value; how much of the scan a pose
+// explains, and what in it contradicts the pose.
 #pragma once
 
 #include <memory>
 #include <span>
+#include <vector>
 
+#include "calibration/registration/surface_samples.h"
 #include "calibration/scan/scan.h"
 #include "mesh/mesh.h"
+#include "scene/view.h"
 #include "tracing/tracer.h"
 
 namespace livery {
+
+struct PoseGuess {
+    Rigid3 scan_from_mesh;
+    double votes = 0.0;
+};
+
+/// Poses by voting of oriented point pairs (Drost, Ulrich, Navab, Ilic: "Model globally, match
+/// locally", CVPR 2010): each pair of scan samples whose distance and angles are those of a pair
+/// of the mesh votes for the pose that lays one over the other. Both sides about `spacing_mm`
+/// apart. Poses alike (15 degrees, 3 spacings) are one; the best `most`, by votes. What is not of
+/// the product (a table, a hand) makes votes that do not add up.
+std::vector<PoseGuess> poses_by_pairs(const SurfaceSamples& mesh,
+                                      const SurfaceSamples& scan,
+                                      double spacing_mm,
+                                      std::size_t most);
 
 /// Counts of projector pixels, of those looked at.
 struct PoseEvidence {

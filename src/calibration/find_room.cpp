@@ -1,15 +1,15 @@
-#include "jobs/calibrate/room_pose.h"
-
 #include <chrono>
 #include <optional>
 #include <span>
 
 #include <glm/matrix.hpp>
 
+#include "calibration/calibrate_live.h"
 #include "calibration/registration/pair_pose.h"
 #include "calibration/registration/register_scan.h"
 #include "core/error.h"
 #include "core/hash.h"
+#include "core/time.h"
 
 namespace livery {
 
@@ -74,46 +74,8 @@ RoomGeometry solve_room(const LiveMap& seen,
     return room;
 }
 
-}  // namespace
-
-RoomPose find_room(const BenchPorts& ports,
-                   int projector_width,
-                   int projector_height,
-                   const DataSheets& sheets,
-                   const Product& product,
-                   const Progress& progress,
-                   const std::filesystem::path& checkpoint,
-                   PlaceCode places) {
-    LiveOptions options;
-    options.places = places;
-    options.width = projector_width;
-    options.height = projector_height;
-    LiveMap seen = photograph_map(ports, options, progress.part(0.0, 0.6));
-    RoomPose found;
-    found.capture_seconds = seen.capture_seconds;
-
-    const auto start = std::chrono::steady_clock::now();
-    const std::string made_of = hash_of(seen, sheets, product.mesh);
-    if (auto before = found_before(checkpoint, made_of)) {
-        found.geometry = std::move(*before);
-    } else {
-        found.geometry = solve_room(seen,
-                                    projector_of(sheets, projector_width, projector_height),
-                                    sheets,
-                                    product.mesh,
-                                    progress.part(0.6, 1.0));
-        found.geometry.made_of = made_of;
-        if (!checkpoint.empty()) write_room_file(checkpoint, found.geometry);
-    }
-    found.map = std::move(seen.map);
-    found.white = std::move(seen.white);
-    found.black = std::move(seen.black);
-    found.kept = std::move(seen.kept);
-    found.solve_seconds =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    return found;
-}
-
+/// Turns the room about a sphere's centre until the projector's axes are those of `said`: its
+/// photographs do not tell them. Any other product stays as it is.
 void take_turn_of(const View& said, RoomGeometry& room) {
     if (room.free_turns != 3) return;
     const glm::dvec3 centre = room.turns_through_mm;
@@ -123,6 +85,40 @@ void take_turn_of(const View& said, RoomGeometry& room) {
     for (View* view : {&room.projector, &room.camera}) {
         view->view_from_world = view->view_from_world * found_from_said;
     }
+}
+
+}  // namespace
+
+bool finds_room(const CalibrationSettings& settings) {
+    return !settings.projector && settings.data_sheets && settings.product;
+}
+
+RoomPose find_room(const BenchPorts& ports,
+                   const CalibrationSettings& settings,
+                   const Progress& progress,
+                   const std::filesystem::path& checkpoint) {
+    check_argument(finds_room(settings), "a room is found from data sheets and a product's mesh");
+    const DataSheets& sheets = *settings.data_sheets;
+    const Mesh& mesh = settings.product->mesh;
+    RoomPose room;
+    room.seen = photograph_map(ports, settings, progress.part(0.0, 0.6));
+
+    const auto start = std::chrono::steady_clock::now();
+    const std::string made_of = hash_of(room.seen, sheets, mesh);
+    if (auto before = found_before(checkpoint, made_of)) {
+        room.geometry = std::move(*before);
+    } else {
+        room.geometry = solve_room(room.seen,
+                                   projector_of(sheets, settings.width, settings.height),
+                                   sheets,
+                                   mesh,
+                                   progress.part(0.6, 1.0));
+        room.geometry.made_of = made_of;
+        if (!checkpoint.empty()) write_room_file(checkpoint, room.geometry);
+    }
+    if (settings.turned_as) take_turn_of(*settings.turned_as, room.geometry);
+    room.solve_seconds = seconds_since(start);
+    return room;
 }
 
 }  // namespace livery

@@ -1,9 +1,8 @@
-#include "jobs/camera_to_xyz_file.h"
-
 #include <cmath>
 
 #include <glm/matrix.hpp>
 
+#include "calibration/settings.h"
 #include "core/colour.h"
 #include "core/error.h"
 #include "core/json.h"
@@ -22,6 +21,13 @@ void refuse_singular(const JsonReader& field, const glm::dmat3& matrix) {
     if (!(std::abs(glm::determinant(matrix)) > kSingular * lengths)) {
         field.fail("a singular matrix", "three independent columns");
     }
+}
+
+CameraToXyz assumed_rec709() {
+    CameraToXyz result;
+    result.xyz_from_camera = xyz_from_rec709();
+    result.origin = "assumed Rec.709";
+    return result;
 }
 
 }  // namespace
@@ -60,13 +66,6 @@ CameraToXyz parse_camera_to_xyz(const std::string& text, const std::filesystem::
         result.measured_at_px = glm::dvec2(pixel[0], pixel[1]);
     }
     result.origin = "primaries";
-    return result;
-}
-
-CameraToXyz assumed_rec709() {
-    CameraToXyz result;
-    result.xyz_from_camera = xyz_from_rec709();
-    result.origin = "assumed Rec.709";
     return result;
 }
 
