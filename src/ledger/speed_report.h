@@ -9,7 +9,6 @@
 
 namespace livery {
 
-
 /// Tables of the sweep, the stages and the desktop.
 std::string markdown_of(const SpeedLedger& result);
 

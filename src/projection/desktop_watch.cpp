@@ -11,9 +11,9 @@
 #include <poll.h>
 
 #include "core/log.h"
-#include "projection/session_bus.h"
 #include "projection/mutter.h"
 #include "projection/outputs.h"
+#include "projection/session_bus.h"
 
 namespace livery {
 namespace {

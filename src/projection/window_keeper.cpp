@@ -17,8 +17,8 @@
 
 #include "core/log.h"
 #include "projection/desktop_watch.h"
-#include "projection/session_bus.h"
 #include "projection/outputs.h"
+#include "projection/session_bus.h"
 
 namespace livery {
 

@@ -8,9 +8,9 @@
 
 #include "compensation/white_segment.h"
 #include "core/error.h"
-#include "gl/program.h"
 #include "gl/context.h"
 #include "gl/handles.h"
+#include "gl/program.h"
 #include "gl/read_back.h"
 
 namespace livery {

@@ -1,6 +1,4 @@
 // What a drive shows, against worlds that are known exactly.
-#include "compensation/lit_pixels.h"
-
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -10,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "compensation/compensate.h"
+#include "compensation/lit_pixels.h"
 #include "compensation/synthetic.h"
 #include "compensation/white_segment.h"
 #include "core/random.h"

@@ -1,15 +1,14 @@
 // A fence passes a finished texture from one thread's context to another's.
-#include "gl/timer.h"
-
 #include <thread>
 #include <vector>
 
 #include <gtest/gtest.h>
 
-#include "gl/program.h"
 #include "gl/context.h"
 #include "gl/draw.h"
+#include "gl/program.h"
 #include "gl/read_back.h"
+#include "gl/timer.h"
 #include "support/gl_device.h"
 
 namespace livery {

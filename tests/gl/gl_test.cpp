@@ -9,10 +9,10 @@
 
 #include <gtest/gtest.h>
 
-#include "gl/program.h"
 #include "gl/context.h"
 #include "gl/draw.h"
 #include "gl/handles.h"
+#include "gl/program.h"
 #include "gl/read_back.h"
 #include "gl/timer.h"
 #include "support/gl_device.h"

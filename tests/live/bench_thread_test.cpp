@@ -6,9 +6,9 @@
 #include <gtest/gtest.h>
 
 #include "core/paths.h"
-#include "live/projector_setup.h"
 #include "live/contexts.h"
 #include "live/orbit.h"
+#include "live/projector_setup.h"
 #include "scene/library.h"
 #include "support/kept_light.h"
 #include "support/temporary_folder.h"

@@ -1,5 +1,3 @@
-#include "live/preview_picture.h"
-
 #include <atomic>
 #include <cstdlib>
 #include <fstream>
@@ -12,6 +10,7 @@
 #include "core/image_io.h"
 #include "core/paths.h"
 #include "live/contexts.h"
+#include "live/preview_picture.h"
 #include "live/preview_thread.h"
 #include "support/gl_device.h"
 #include "support/temporary_folder.h"

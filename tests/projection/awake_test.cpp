@@ -4,8 +4,8 @@
 
 #include "fake_desktop_bus.h"
 #include "projection/check_signal.h"
-#include "projection/session_bus.h"
 #include "projection/outputs.h"
+#include "projection/session_bus.h"
 #include "stage.h"
 
 namespace livery {

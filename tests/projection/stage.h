@@ -8,8 +8,8 @@
 #include <tuple>
 #include <vector>
 
-#include "gl/program.h"
 #include "gl/handles.h"
+#include "gl/program.h"
 #include "gl/window.h"
 #include "projection/projector_screen.h"
 #include "support/desktop.h"

@@ -11,8 +11,8 @@
 #include "core/worst_error.h"
 #include "gl/read_back.h"
 #include "radiance/lanes/processor_shading.h"
-#include "radiance/renderer_fixture.h"
 #include "radiance/packed_fragments.h"
+#include "radiance/renderer_fixture.h"
 #include "support/gl_device.h"
 #include "support/shading_devices.h"
 

@@ -1,6 +1,4 @@
 // The path tracer under a projector's picture: closed forms, and light that spreads from an edge.
-#include "reference/light_sampling.h"
-
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -10,6 +8,7 @@
 
 #include "appearance/subsurface/subsurface_profile.h"
 #include "appearance/subsurface/translucent_paint.h"
+#include "reference/light_sampling.h"
 #include "reference/scenes.h"
 
 namespace livery {

@@ -8,8 +8,8 @@
 #include "appearance/subsurface/translucent_paint.h"
 #include "core/colour.h"
 #include "core/parallel.h"
-#include "reference/subsurface_walk.h"
 #include "reference/scenes.h"
+#include "reference/subsurface_walk.h"
 #include "tracing/closed_part.h"
 
 namespace livery {

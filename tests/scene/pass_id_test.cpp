@@ -1,9 +1,9 @@
-#include "scene/frame_plan.h"
-
 #include <set>
 #include <stdexcept>
 
 #include <gtest/gtest.h>
+
+#include "scene/frame_plan.h"
 
 namespace livery {
 namespace {

@@ -1,6 +1,6 @@
-#include "studio/paint/paint_portrait.h"
-
 #include <gtest/gtest.h>
+
+#include "studio/paint/paint_portrait.h"
 
 namespace livery {
 namespace {

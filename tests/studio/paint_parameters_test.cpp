@@ -1,6 +1,4 @@
 // What the panel says of a paint's parameters, and colours as people type them.
-#include "studio/paint/paint_rows.h"
-
 #include <cmath>
 #include <string>
 
@@ -8,6 +6,7 @@
 
 #include "core/colour.h"
 #include "studio/kit/widgets.h"
+#include "studio/paint/paint_rows.h"
 
 namespace livery {
 namespace {

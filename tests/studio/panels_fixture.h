@@ -10,8 +10,8 @@
 
 #include "scene/library.h"
 #include "studio/kit/imgui_versions.h"
-#include "studio/kit/widgets.h"
 #include "studio/kit/ui_map.h"
+#include "studio/kit/widgets.h"
 #include "studio/presenting/ballot_panel.h"
 #include "studio/studio.h"
 #include "support/temporary_folder.h"

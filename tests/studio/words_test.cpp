@@ -1,6 +1,6 @@
-#include "studio/kit/widgets.h"
-
 #include <gtest/gtest.h>
+
+#include "studio/kit/widgets.h"
 
 namespace livery {
 namespace {

@@ -8,8 +8,8 @@
 #include "core/image.h"
 #include "core/progress.h"
 #include "ledger/accuracy/scenes.h"
-#include "radiance/renderer.h"
 #include "radiance/lanes/input_layers.h"
+#include "radiance/renderer.h"
 
 namespace livery {
 
