@@ -1,5 +1,5 @@
 #version 450 core
-// Wanted colours as sRGB, for a projector that nothing corrects: src/jobs/picture.cpp's
+// Wanted colours as sRGB, for a projector that nothing corrects: src/jobs/comparison.cpp's
 // srgb_from_working() in floats.
 layout(binding = 0) uniform sampler2D wanted_working;
 uniform mat3 rec709_from_working;

@@ -43,7 +43,7 @@ uniform ArtworkPlace u_relief_place;
 uniform sampler2DArray u_relief;
 uniform float u_relief_depth;
 
-// Tilts s_normal, and tells the variance of the slopes (src/scene/artwork_relief.cpp).
+// Tilts s_normal, and tells the variance of the slopes (src/scene/artwork_cover.cpp).
 float tilt_normal(vec4 tangent) {
     float facing = facing_cover_of(u_relief_place, s_normal);
     if (facing <= 0.0) return 0.0;

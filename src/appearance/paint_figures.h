@@ -30,7 +30,7 @@ using FiveAngleLab = std::array<glm::dvec3, kAspecularAngles_deg.size()>;
 /// Where the face colour stands in it: 45 degrees, straight above the panel.
 inline constexpr std::size_t kFaceAngle = 2;
 
-/// Of a formula from its working space values (core/ten_degree.h), of measured spectra by
+/// Of a formula from its working space values (core/spectrum.h), of measured spectra by
 /// integration of what the file holds. With a grain the light comes along it. Throws FileError when
 /// a measured paint's file has gone.
 FiveAngleLab five_angle_lab(const Material& material);

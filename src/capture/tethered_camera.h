@@ -26,7 +26,7 @@ std::vector<FoundCamera> list_tethered_cameras();
 /// Opens it. Photographs are RAW where the camera is set so (linear, camera colours, half the
 /// sensor's resolution each way: one pixel from each square of its colour filter, nothing
 /// interpolated), else JPEG, taken for sRGB; each is deleted from the card when it is here. Every
-/// call is answered by a process of the camera's own (capture/camera_process.h): one that does not
+/// call is answered by a process of the camera's own (livery-camera): one that does not
 /// answer in time, or breaks off, is ended, and the next call opens the camera anew. Throws
 /// CameraFault.
 std::unique_ptr<Camera> open_tethered_camera(const TetheredOptions& options);

@@ -26,7 +26,7 @@ const Spectrum& cie1931_x();
 const Spectrum& cie1931_y();
 const Spectrum& cie1931_z();
 
-/// CIE 1964 10 degree observer, by whom paint is measured (ten_degree.h).
+/// CIE 1964 10 degree observer, by whom paint is measured.
 const Spectrum& cie1964_x();
 const Spectrum& cie1964_y();
 const Spectrum& cie1964_z();

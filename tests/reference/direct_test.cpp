@@ -200,7 +200,7 @@ TEST(Sampling, TheStandardErrorIsWhatTwoSeedsDifferBy) {
     }
     ASSERT_GT(pixels, 300);
     // The mean of about 500 squares of standard normals: 1 +- 0.063, and lower: batches know less
-    // of one another than they are evenly spread together (reference/pixel_estimate.h).
+    // of one another than they are evenly spread together (reference/path_tracer.h).
     EXPECT_LT(chi2 / pixels, 1.25);
     EXPECT_GT(chi2 / pixels, 0.1);
 }

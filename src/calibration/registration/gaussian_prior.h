@@ -29,8 +29,8 @@ Eigen::MatrixXd covariance_from(const Eigen::MatrixXd& information);
 /// Information about independent terms, by their standard deviations.
 Eigen::MatrixXd independent(const Eigen::VectorXd& sigma);
 
-/// Information (pair_information.h) about everything but the mock-up's pose and scale, before the
-/// photographs of it: both lenses and where the k-th camera stands against the projector.
+/// Information (geometry/solve_pair.h) about everything but the mock-up's pose and scale, before
+/// the photographs of it: both lenses and where the k-th camera stands against the projector.
 Eigen::MatrixXd known_before(const LensPrior& prior,
                              const View& projector,
                              const View& camera,

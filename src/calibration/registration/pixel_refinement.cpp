@@ -30,7 +30,8 @@ Rigid3 moved(const double* six, const Rigid3& pose) {
     return {turn * pose.rotation, turn * pose.translation + glm::dvec3(six[3], six[4], six[5])};
 }
 
-/// Changes of a lens: focal length (logarithm), principal point, distortion (pair_information.h).
+/// Changes of a lens: focal length (logarithm), principal point, distortion
+/// (geometry/solve_pair.h).
 using LensChange = std::array<double, kLensTerms>;
 using PoseChange = std::array<double, kPoseTerms>;
 

@@ -34,7 +34,7 @@ struct MirrorRings {
 };
 /// As wide as long for so many nodes a ring; 0: few, where nothing is hidden.
 MirrorRings mirror_rings(int nodes);
-/// In place of nodes a ring: no sum, one look-up a lobe (mirror_look_up.h).
+/// In place of nodes a ring: no sum, one look-up a lobe (mirrored_environment.h).
 inline constexpr int kNoNodes = -1;
 /// What a fragment then costs: looks up the environment, and traces.
 int mirror_nodes(int nodes);
