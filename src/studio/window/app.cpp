@@ -23,9 +23,9 @@
 #include "studio/presenting/presenting.h"
 #include "studio/product/new_session.h"
 #include "studio/studio.h"
+#include "studio/window/glfw_window.h"
 #include "studio/window/imgui_window.h"
 #include "studio/window/layout.h"
-#include "studio/window/window_place.h"
 
 namespace livery {
 

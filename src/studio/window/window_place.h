@@ -1,13 +1,13 @@
-// Where the operator's window stands: as it stood, but never on the projector; and where GLFW has
-// it and the monitors.
+// Where the operator's window stands: as it stood, but never on the projector.
 #pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
 
 #include <glm/vec2.hpp>
 
 #include "projection/monitors.h"
-#include "studio/studio.h"
-
-struct GLFWwindow;
 
 namespace livery {
 
@@ -37,21 +37,5 @@ bool must_move(const WindowPlace& place,
 std::optional<WindowPlace> place_beside_projector(const WindowPlace& wanted,
                                                   const std::vector<Monitor>& monitors,
                                                   const std::string& projector_id);
-
-/// x, y, width and height of each: GLFW tells of monitors that come and go, not of those that move.
-std::vector<std::array<int, 4>> places_of_monitors();
-/// Of the monitor that the window lies on.
-float screen_scale(GLFWwindow* window, const std::vector<Monitor>& monitors);
-
-WindowPlace place_of(GLFWwindow* window);
-void put_window(GLFWwindow* window, const WindowPlace& place);
-/// Where the window was left, or in the middle of the main monitor.
-WindowPlace first_place(const Studio& studio, std::optional<glm::ivec2> size_px);
-/// Off the projector, when the projector was chosen or monitors came and went.
-void move_off_projector(Studio& studio, GLFWwindow* window);
-
-/// Read on the background thread: the module that reads pictures takes a while to load. The window
-/// must outlive the thread.
-void give_icon(Studio& studio, GLFWwindow* window);
 
 }  // namespace livery
