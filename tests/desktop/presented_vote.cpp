@@ -23,11 +23,12 @@ void PresentedVote::present_paused() {
     // What looks were ticked changes the sentences above the button, and where it is.
     const int frame = program->state("frame");
     wait_until([&] { return program->state("frame") >= frame + 3; }, 20s);
+    const auto before = static_cast<std::ptrdiff_t>(program->trace().size());
     program->click("ballot:present");
     program->wait_for_state("vote", "adapting");
     // The look that was there went at once: nobody looks at it while all are frozen.
     const std::vector<TraceLine> trace = program->trace();
-    const auto first = std::find_if(trace.begin(), trace.end(), [](const TraceLine& line) {
+    const auto first = std::find_if(trace.begin() + before, trace.end(), [](const TraceLine& line) {
         return line.event == "vote-picture";
     });
     ASSERT_NE(first, trace.end());
